@@ -1,6 +1,8 @@
 #include "calibration/capture/camera_controls.h"
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <memory>
 
 #include <fcntl.h>
@@ -11,6 +13,8 @@
 namespace lumorph {
 
 namespace {
+
+constexpr double kExposureUnit = 1e-4; // seconds, of V4L2_CID_EXPOSURE_ABSOLUTE
 
 /// Something a camera changes by itself.
 struct Automatic {
@@ -55,6 +59,22 @@ CameraControls controlsOf(const std::string& path) {
                 v4l2_control value{control, wanted};
                 return *file >= 0 && ioctl(*file, VIDIOC_S_CTRL, &value) == 0;
             }};
+}
+
+std::optional<std::pair<double, double>> rangeOfExposure(const std::string& path) {
+    const int opened = open(path.c_str(), O_RDWR | O_CLOEXEC | O_NONBLOCK);
+    if (opened < 0) return std::nullopt;
+    v4l2_queryctrl asked{};
+    asked.id = V4L2_CID_EXPOSURE_ABSOLUTE;
+    const bool isThere = ioctl(opened, VIDIOC_QUERYCTRL, &asked) == 0 && (asked.flags & V4L2_CTRL_FLAG_DISABLED) == 0;
+    close(opened);
+    if (!isThere || asked.maximum <= asked.minimum) return std::nullopt;
+    return std::pair(kExposureUnit * std::max(asked.minimum, 1), kExposureUnit * asked.maximum);
+}
+
+bool setExposure(const CameraControls& controls, double seconds) {
+    const int wanted = static_cast<int>(std::lround(seconds / kExposureUnit));
+    return controls.set(V4L2_CID_EXPOSURE_ABSOLUTE, wanted) && controls.get(V4L2_CID_EXPOSURE_ABSOLUTE) == wanted;
 }
 
 std::vector<std::string> switchAutomaticsOff(const CameraControls& controls) {

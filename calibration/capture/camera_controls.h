@@ -3,6 +3,7 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace lumorph {
@@ -15,6 +16,11 @@ struct CameraControls {
 
 /// Those of a camera of this machine, which may be streaming; one that cannot be opened has none.
 [[nodiscard]] CameraControls controlsOf(const std::string& path);
+
+/// Seconds between which a camera of this machine can expose by hand; empty: its driver has no such control.
+[[nodiscard]] std::optional<std::pair<double, double>> rangeOfExposure(const std::string& path);
+/// False: refused, or not kept.
+[[nodiscard]] bool setExposure(const CameraControls& controls, double seconds);
 
 /// Switches all that changes pictures by itself off: exposure, gain, white balance, focus and such stay where they are.
 /// What stays on is named, with what to do.

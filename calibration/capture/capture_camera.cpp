@@ -28,6 +28,14 @@ void silenceVideo() {
     std::call_once(once, [] { cv::utils::logging::setLogLevel(cv::utils::logging::LOG_LEVEL_SILENT); });
 }
 
+} // namespace
+
+void CaptureCamera::setExposure(double /*seconds*/) {
+    throw DeviceError("camera " + name(), "its exposure cannot be set from here", "use another camera");
+}
+
+namespace {
+
 class DriverCamera final : public CaptureCamera {
 public:
     DriverCamera(std::string path, cv::Size most) : path_(std::move(path)) {
@@ -69,6 +77,19 @@ public:
     [[nodiscard]] std::string name() const override { return path_; }
     [[nodiscard]] cv::Size size() const override { return size_; }
     [[nodiscard]] std::vector<std::string> automatics() const override { return automatics_; }
+    [[nodiscard]] std::optional<Exposures> exposures() const override {
+        const auto range = rangeOfExposure(path_);
+        if (!range) return std::nullopt;
+        // Longer than a frame would slow the pictures down.
+        const double frame = 1e-6 * static_cast<double>(interval().count());
+        return Exposures{range->first, std::clamp(frame, range->first, range->second)};
+    }
+    void setExposure(double seconds) override {
+        if (!lumorph::setExposure(controlsOf(path_), seconds))
+            throw DeviceError("camera " + path_,
+                              "does not take an exposure of " + std::to_string(1e3 * seconds) + " ms",
+                              "switch its automatic exposure off, or use another camera");
+    }
 
 private:
     cv::Mat read() {

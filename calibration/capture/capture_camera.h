@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -27,6 +28,13 @@ public:
     [[nodiscard]] virtual cv::Size size() const = 0;
     /// Whether it sees what is shown now; recordings do not.
     [[nodiscard]] virtual bool isLive() const { return true; }
+    /// Seconds that it can expose; empty: it cannot be told.
+    struct Exposures {
+        double shortest = 0.0, longest = 0.0;
+    };
+    [[nodiscard]] virtual std::optional<Exposures> exposures() const { return std::nullopt; }
+    /// Throws DeviceError for a camera that cannot be told.
+    virtual void setExposure(double seconds);
     /// Automatics that are on and could not be switched off: sentences that say what to do.
     [[nodiscard]] virtual std::vector<std::string> automatics() const { return {}; }
 };

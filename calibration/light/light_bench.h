@@ -16,7 +16,7 @@ using LightShow = std::vector<std::optional<glm::ivec3>>;
 class LightBench {
 public:
     virtual ~LightBench() = default;
-    /// 8-bit red, green, blue, as large as the camera's picture.
+    /// 8-bit red, green, blue, or grey of a camera without colour; as large as the camera's picture.
     [[nodiscard]] virtual cv::Mat photograph(const LightShow& show, double seconds) = 0;
     [[nodiscard]] virtual double shortestExposure() const = 0; ///< seconds
     [[nodiscard]] virtual double longestExposure() const = 0;

@@ -101,6 +101,7 @@ private:
     CameraResponses responses_;
     std::vector<ReferenceShots> references_;
     std::vector<ProjectorShots> shots_;
+    glm::dvec3 unknownTint_{1.0}; ///< of a camera without colour: what its channels' gains were divided by
     LightShot freshDark_;
     std::vector<FreshShot> fresh_;
     LightCalibration result_;
@@ -265,12 +266,20 @@ void LightMeasurement::applyWhites(WhiteFit fit, const std::vector<std::array<Ch
             logs += std::log(gain);
         }
     const double mean = std::exp(logs / (3.0 * static_cast<double>(on_.size())));
+    // How much more a camera without colour sees of red than of blue nobody knows: only what projectors differ by
+    // counts.
+    if (series_.isMonochrome())
+        for (int channel = 0; channel < 3; ++channel) {
+            double own = 0.0;
+            for (const std::size_t p : on_) own += std::log(fit.gains[p][channel] / mean);
+            unknownTint_[channel] = std::exp(own / static_cast<double>(on_.size()));
+        }
     Installation& room = result_.room;
     const Origin origin{Origin::Way::measured, "flat light, " + std::to_string(series_.photographs()) + " photographs",
                         utcDate()};
     for (std::size_t k = 0; k < on_.size(); ++k) {
         InstalledProjector& projector = room.projectors[on_[k]];
-        projector.gain = glm::vec3(fit.gains[on_[k]] / mean);
+        projector.gain = glm::vec3(fit.gains[on_[k]] / (mean * unknownTint_));
         projector.responseCurve = light::curveOf(shots_[k].values, channels[k]);
         for (int channel = 0; channel < 3; ++channel)
             projector.black[channel] = static_cast<float>(channels[k][static_cast<std::size_t>(channel)].black);
@@ -293,6 +302,8 @@ void LightMeasurement::applyWhites(WhiteFit fit, const std::vector<std::array<Ch
                   " is taken to be white, and its tint is among the projectors' gains. What is projected comes out "
                   "right all the same. Gains are relative, their mean is 1; what the camera shows as neutral is taken "
                   "to be neutral.";
+    if (series_.isMonochrome())
+        result_.assumption += " The camera sees no colour: the tint that all projectors share is taken to be neutral.";
 }
 
 /// How far a room's prediction is from fresh light, apart from how bright all of it is.
@@ -315,8 +326,8 @@ FreshLight LightMeasurement::judged(const Installation& room, const WhiteFit& fi
                 light += full * lightOfValue(projector, fresh.greys[p] / 255.0);
                 white += full;
             }
-            light = mixing * light;
-            white = mixing * white;
+            light = mixing * (unknownTint_ * light);
+            white = mixing * (unknownTint_ * white);
             for (int channel = 0; channel < 3; ++channel) {
                 const auto seen = lightBeyond(fresh.shot, &freshDark_, responses_, i, channel);
                 if (!seen || !(*seen > 0.0)) continue;

@@ -41,7 +41,8 @@ struct LightCalibration {
 /// which the fit never saw, judge the result.
 ///
 /// What cannot be told: how bright the light is as a whole (the geometric mean of all gains is taken to be 1), the
-/// camera's own colours (what it shows with three equal bytes is taken to be neutral), and without a white sheet the
+/// camera's own colours (what it shows with three equal bytes is taken to be neutral; of a camera without colour the
+/// tint that all projectors share), and without a white sheet the
 /// tint of a projector's white from that of the paper it falls on (the lighter of device and table is taken to be
 /// white). What is projected comes out right in either case: only products of the two are used.
 ///

@@ -159,16 +159,16 @@ std::vector<LightPatch> lightPatches(const Installation& room, const Rig& rig, c
 }
 
 std::vector<glm::dvec3> patchBytes(std::span<const LightPatch> patches, const cv::Mat& picture) {
-    if (picture.type() != CV_8UC3)
-        throw InvalidInput("picture of the camera", "it does not have three channels of 8 bits",
-                           "let the camera take pictures in colour");
+    if (picture.type() != CV_8UC3 && picture.type() != CV_8UC1)
+        throw InvalidInput("picture of the camera", "it does not have one or three channels of 8 bits",
+                           "choose another format at the camera");
     std::vector<glm::dvec3> means;
     means.reserve(patches.size());
     for (const LightPatch& patch : patches) {
         if ((patch.pixels & cv::Rect({}, picture.size())) != patch.pixels)
             throw InvalidInput("picture of the camera", "it is smaller than the camera's", "take all of the same size");
         const cv::Scalar mean = cv::mean(picture(patch.pixels));
-        means.emplace_back(mean[0], mean[1], mean[2]);
+        means.push_back(picture.channels() == 1 ? glm::dvec3(mean[0]) : glm::dvec3(mean[0], mean[1], mean[2]));
     }
     return means;
 }

@@ -50,7 +50,7 @@ struct LightPatch {
                                                    const CalibratedCamera& camera,
                                                    const std::optional<WhiteSheet>& sheet);
 
-/// Mean bytes of each patch, red, green and blue, of an 8-bit picture with three channels in that order.
+/// Mean bytes of each patch of an 8-bit picture: red, green and blue, or of a grey one three times the same.
 [[nodiscard]] std::vector<glm::dvec3> patchBytes(std::span<const LightPatch> patches, const cv::Mat& picture);
 
 } // namespace lumorph

@@ -23,7 +23,9 @@ double brightestOf(const LightShot::Exposed& exposed) {
 
 LightShot::Exposed LightSeries::expose(const LightShow& show, double seconds) {
     ++photographs_;
-    return {seconds, patchBytes(patches_, bench_.photograph(show, seconds))};
+    const cv::Mat picture = bench_.photograph(show, seconds);
+    isMonochrome_ = picture.channels() == 1;
+    return {seconds, patchBytes(patches_, picture)};
 }
 
 void LightSeries::setExposure(const LightShow& white) {

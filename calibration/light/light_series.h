@@ -37,6 +37,8 @@ public:
     /// At many exposures, shares of the one that was set, as far as the camera can.
     [[nodiscard]] LightShot takeAll(const LightShow& show, double longest, double step, int count);
     [[nodiscard]] int photographs() const noexcept { return photographs_; }
+    /// The camera sees no colour.
+    [[nodiscard]] bool isMonochrome() const noexcept { return isMonochrome_; }
 
 private:
     void lookForExposure(const LightShow& white);
@@ -46,6 +48,7 @@ private:
     std::span<const LightPatch> patches_;
     double seconds_ = 0.0;
     int photographs_ = 0;
+    bool isMonochrome_ = false;
 };
 
 /// The three channels of a camera.

@@ -25,7 +25,7 @@ std::vector<ProjectorPoint> Bench::look(const StageSite&, const std::vector<doub
     lacksCamera();
 }
 DeviceBench& Bench::device(const StageSite&) { lacksCamera(); }
-LightBench& Bench::light(const StageSite&, const std::optional<WhiteSheet>&) { lacksCamera(); }
+LightBench& Bench::light(const StageSite&, const std::optional<WhiteSheet>&, const Progress&) { lacksCamera(); }
 DelaysCapture Bench::recordDelays(const StageSite&, const Progress&) { lacksCamera(); }
 
 } // namespace lumorph

@@ -48,12 +48,13 @@ public:
     [[nodiscard]] virtual std::vector<ProjectorPoint> look(const StageSite& site, const std::vector<double>& commanded,
                                                            const Progress& progress);
     /// Pictures of one `look`; 0: it decodes without pictures.
-    [[nodiscard]] virtual int picturesOfLook() const { return 0; }
+    [[nodiscard]] virtual int picturesOfLook(const StageSite& /*site*/) const { return 0; }
     [[nodiscard]] virtual DeviceBench& device(const StageSite& site);
     /// What a check projects.
     [[nodiscard]] virtual std::string checkPattern() const { return "graycode"; }
     /// `sheet`: where white paper is to lie. The bench outlives what it gives.
-    [[nodiscard]] virtual LightBench& light(const StageSite& site, const std::optional<WhiteSheet>& sheet);
+    [[nodiscard]] virtual LightBench& light(const StageSite& site, const std::optional<WhiteSheet>& sheet,
+                                            const Progress& progress);
     /// Whether a sheet of white paper can lie where it is wanted.
     [[nodiscard]] virtual bool laysSheet() const { return false; }
     [[nodiscard]] virtual DelaysCapture recordDelays(const StageSite& site, const Progress& progress);

@@ -73,7 +73,7 @@ DeviceBench& LabBench::device(const StageSite& site) {
     return *device_;
 }
 
-LightBench& LabBench::light(const StageSite&, const std::optional<WhiteSheet>& sheet) {
+LightBench& LabBench::light(const StageSite&, const std::optional<WhiteSheet>& sheet, const Progress&) {
     return light_.emplace(truth_, rig_, lightLabCamera(truth_, options_.light), sheet, options_.light, seed_);
 }
 

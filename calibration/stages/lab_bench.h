@@ -47,7 +47,8 @@ public:
                                                    const Progress& progress) override;
     [[nodiscard]] DeviceBench& device(const StageSite& site) override;
     [[nodiscard]] std::string checkPattern() const override { return options_.checkPattern; }
-    [[nodiscard]] LightBench& light(const StageSite& site, const std::optional<WhiteSheet>& sheet) override;
+    [[nodiscard]] LightBench& light(const StageSite& site, const std::optional<WhiteSheet>& sheet,
+                                    const Progress& progress) override;
     [[nodiscard]] bool laysSheet() const override { return options_.light.laysSheet; }
     [[nodiscard]] DelaysCapture recordDelays(const StageSite& site, const Progress& progress) override;
 

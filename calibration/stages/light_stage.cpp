@@ -137,7 +137,7 @@ MeasuredStage measureLight(const StageSite& site, Bench& bench, const Progress& 
     }
     const std::vector<LightPatch> patches = lightPatches(room, *site.rig, camera, sheet);
     progress.throwIfCancelled();
-    KeptLight kept(bench.light(site, sheet), room.projectors.size(), recording);
+    KeptLight kept(bench.light(site, sheet, progress), room.projectors.size(), recording);
     LightCalibration result = measureLight(site.room, patches, kept, progress.part(0.1, 1.0));
     if (bench.laysSheet() && !sheet) result.warnings.push_back(noRoomForSheet());
     return {std::move(recording), std::move(result)};

@@ -89,7 +89,7 @@ MeasuredStage measureServos(const StageSite& site, Bench& bench, const Progress&
     const StageSite seen{site.rig, stages::roomWithCamera(site, recording.source)};
     const CalibratedCamera &camera = seen.room.cameras.front().camera, &projector = seen.room.projectors.front().camera;
     ServoPlanOptions options;
-    if (bench.picturesOfLook() > 0) options.pictures = bench.picturesOfLook();
+    if (const int pictures = bench.picturesOfLook(seen); pictures > 0) options.pictures = pictures;
     RecordedTable light;
     light.columns = stages::kLightColumns;
     std::size_t looks = 0;

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "calibration/report/calibration_file.h"
+#include "calibration/stages/recording.h"
 #include "core/geometry/mesh_writers.h"
 #include "core/geometry/model.h"
 #include "core/mdf/builder.h"
@@ -154,6 +155,17 @@ int main(int argc, char** argv) {
     writeText("project/draft.lumorph",
               R"({"model": "a.glb", "author": "b", "matching": {"driver": "hand", "more": [1]}})");
 
+    RecordedTable touches{{"check", "x"}, {}, {}};
+    touches.add("dot 1", {0.0, 0.25});
+    touches.add("fresh \"dot\", 1", {1.0, -1e-3});
+    const std::string table = tableText(touches);
+    writeText("stage_recording/table.csv", "0" + table);
+    writeText("stage_recording/bare.csv", std::string("0on,off\n0.5,0.625\n"));
+    writeText("stage_recording/whole.json",
+              "1{\"lumorph\":\"calibration recording\",\"version\":1,\"stage\":\"pointer\",\"method\":\"\","
+              "\"device\":\"tablet\",\"source\":{\"kind\":\"table\",\"who\":\"a tracker\",\"date\":\"\","
+              "\"seed\":0},\"files\":[{\"name\":\"touches.csv\",\"bytes\":" +
+                  std::to_string(table.size()) + ",\"crc32\":1}]}\x1e" + table);
     CalibrationRecord calibration;
     calibration.source = {"2026-11-24T17:05:00Z", "chess:9x7:75", "graycode", {"capture"}, 0.001};
     ProcamCalibration& result = calibration.result;

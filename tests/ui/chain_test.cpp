@@ -15,6 +15,7 @@
 #include "calibration/lab/lab_lens.h"
 #include "calibration/lab/moved_room.h"
 #include "calibration/lab/registration_lab.h"
+#include "calibration/stages/lab_bench.h"
 #include "calibration/verify/verify_lab.h"
 #include "tests/support/chain_judge.h"
 #include "tests/support/cut_tablet.h"
@@ -467,13 +468,12 @@ TEST_F(Chain, ARealDeviceIsPlacedByRecordings) {
 
 TEST(ChainLinks, ACheckThatCannotPutRightOffersNothingToUse) {
     // The camera has moved, and the room knows of none: what is believed is the lab's, which is not kept.
-    studio::LinkTask task;
-    task.rig = std::make_shared<const Rig>(test::cutTablet());
-    task.believed = defaultInstallation();
-    CalibratedCamera& lamp = task.believed.projectors.front().camera;
+    StageSite site{std::make_shared<const Rig>(test::cutTablet()), defaultInstallation()};
+    CalibratedCamera& lamp = site.room.projectors.front().camera;
     lamp = withSize(lamp, {480, 270});
-    task.truth = pushed(withLabCamera(task.believed), *task.rig, {"camera", 3e-3, 0.0}, 2);
-    const studio::LinkOutcome outcome = studio::chainLinks().back().inLab(task, {});
+    LabBench bench(*site.rig, pushed(withLabCamera(site.room), *site.rig, {"camera", 3e-3, 0.0}, 2), 1);
+    const studio::LinkOutcome outcome =
+        studio::outcomeOf(measureStage(*studio::chainLinks().back().stage, site, bench), site);
     EXPECT_FALSE(outcome.isGood);
     EXPECT_FALSE(outcome.installation) << outcome.summary.toStdString();
 }

@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "app/studio/calibration/chain.h"
+#include "app/studio/calibration/chain_live.h"
 #include "calibration/lab/registration_lab.h"
 #include "tests/support/cut_tablet.h"
 
@@ -39,9 +40,11 @@ struct LiveCaptureTest : testing::Test {
     Installation measured(LinkId id, const LiveCapture& capture, Installation room) {
         EXPECT_TRUE(capture.isComplete()) << "step " << capture.step() << ": " << capture.trouble();
         if (!capture.isComplete()) return room;
-        const LinkOutcome outcome = linkOf(id).fromLive({rig, room, capture.plan(), capture.takes()}, {});
+        LiveBench bench(capture.plan(), capture.takes(), false);
+        const StageSite site{rig, room};
+        const LinkOutcome outcome = outcomeOf(measureStage(*linkOf(id).stage, site, bench), site);
         EXPECT_TRUE(outcome.isGood) << outcome.summary.toStdString();
-        if (outcome.installation) linkOf(id).apply(*outcome.installation, room);
+        if (outcome.installation) linkOf(id).stage->apply(*outcome.installation, room);
         return room;
     }
     /// Where the lab's first projector throws a pixel.

@@ -132,7 +132,7 @@ protected:
                 options.pattern = "phase:16x3+1x3";
                 options.cameraWidth = 480;
                 options.isJudged = false;
-                found = verifyRoom(table.rig, believed, *bench, {}, options);
+                found = verifyRoom(table.rig, believed, bench->device({}), {}, options);
             } catch (const std::exception& error) {
                 trouble = error.what();
             }

@@ -27,12 +27,12 @@ QString measuredText(const Origin& origin) {
 
 /// Alone, whatever those before it are.
 LinkStand ownStand(const ChainLink& link, const Installation& room, const LastCheck& checked) {
-    if (link.origin == nullptr)
+    if (isCheck(link))
         return checked.date.empty()
                    ? LinkStand{LinkStand::How::open, {}}
                    : LinkStand{checked.isSimulated ? LinkStand::How::simulated : LinkStand::How::measured,
                                QObject::tr("still good, %1").arg(dateText(checked.date))};
-    const Origin* origin = link.origin(room);
+    const Origin* origin = originOf(link, room);
     if (origin == nullptr) return {};
     // What was put in doubt says why.
     if (origin->way == Origin::Way::assumed) return {LinkStand::How::open, QString::fromStdString(origin->method)};
@@ -42,8 +42,8 @@ LinkStand ownStand(const ChainLink& link, const Installation& room, const LastCh
 }
 
 std::string dateOf(const ChainLink& link, const Installation& room, const LastCheck& checked) {
-    if (link.origin == nullptr) return checked.date;
-    const Origin* origin = link.origin(room);
+    if (isCheck(link)) return checked.date;
+    const Origin* origin = originOf(link, room);
     return origin && origin->isCalibrated() ? origin->date : std::string();
 }
 
@@ -94,8 +94,8 @@ InstallationVersion versionOf(const ChainLink& link, const LinkOutcome& outcome,
     if (worst >= 0.0) version.figures.push_back({"worst fresh point", worst, "mm"});
     version.isSimulated = outcome.isSimulated;
     version.installation = room;
-    link.apply(*outcome.installation, version.installation);
-    const Origin* origin = link.origin ? link.origin(version.installation) : nullptr;
+    link.stage->apply(*outcome.installation, version.installation);
+    const Origin* origin = originOf(link, version.installation);
     if (origin) version.date = origin->date;
     return version;
 }
@@ -103,7 +103,7 @@ InstallationVersion versionOf(const ChainLink& link, const LinkOutcome& outcome,
 bool isUsed(const ChainLink& link, const LinkOutcome& outcome, const Installation& room) {
     if (!outcome.installation) return outcome.isGood;
     Installation with = room;
-    link.apply(*outcome.installation, with);
+    link.stage->apply(*outcome.installation, with);
     return with == room;
 }
 

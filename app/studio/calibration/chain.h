@@ -12,7 +12,7 @@
 
 #include "app/studio/calibration/calibration_state.h"
 #include "app/studio/calibration/live_capture.h"
-#include "calibration/capture/device_bench.h"
+#include "calibration/stages/stage.h"
 #include "core/base/progress.h"
 #include "core/rig/rig.h"
 #include "core/scene/installation_store.h"
@@ -45,17 +45,10 @@ struct LinkOutcome {
     std::optional<Installation> installation; ///< as the room would be; empty: refused, or nothing is to be changed
     bool isUsed = false;                      ///< the room has it
     bool isSimulated = false;                 ///< made in the virtual lab, or with simulated devices
+    std::shared_ptr<const StageRecording> recording; ///< that it was made of; null: of other files
     /// Refused because the tracker's coordinates are mirrored or in another unit: what was measured by the same tracker
     /// before is as wrong, though it fits itself.
     bool doubtsTracker = false;
-};
-
-/// What a measurement in the lab begins with.
-struct LinkTask {
-    std::shared_ptr<const Rig> rig;
-    Installation believed;
-    Installation truth; ///< what stands in the virtual lab, which nobody who measures knows
-    std::uint32_t seed = 1;
 };
 
 /// A recording that a link can be measured from.
@@ -70,22 +63,6 @@ struct FileTask {
     std::vector<std::filesystem::path> files; ///< as many, and in the order of, the link's
 };
 
-/// What a measurement with the connected tracker begins with.
-struct LiveTask {
-    std::shared_ptr<const Rig> rig;
-    Installation believed;
-    LivePlan plan;
-    std::vector<LiveTake> takes; ///< one a step of the plan
-};
-
-/// What a measurement with the device on the table begins with.
-struct TableTask {
-    std::shared_ptr<const Rig> rig;
-    Installation believed;
-    std::shared_ptr<DeviceBench> bench;
-    std::uint32_t seed = 1;
-};
-
 /// One thing that is measured. Those before it that it builds on are its needs.
 struct ChainLink {
     LinkId id = LinkId::projector;
@@ -94,26 +71,30 @@ struct ChainLink {
     std::vector<QString> how; ///< what will happen and what one does, a sentence each
     QString warning;          ///< in large letters; empty: none
     std::vector<LinkId> needs;
-    const Origin* (*origin)(const Installation& room) = nullptr; ///< null, or null given: it changes nothing
-    /// Takes over what this link measures, and nothing else.
-    void (*apply)(const Installation& measured, Installation& room) = nullptr;
-    /// Throws as measurements do. Empty: the link has a sequence of its own.
-    std::function<LinkOutcome(const LinkTask& task, const Progress& progress)> inLab;
-    std::vector<LinkFile> files; ///< all of them are needed
-    /// The same from recordings of a real tracker. Empty: it cannot be.
-    std::function<LinkOutcome(const FileTask& task, const Progress& progress)> fromFiles;
+    /// Its row among the stages, which records, solves and applies it; null: the link has a sequence of its own.
+    const CalibrationStage* stage = nullptr;
+    std::vector<LinkFile> files; ///< of a tracker's own recordings, in place of one of ours; all of them are needed
+    std::function<LinkOutcome(const FileTask& task, const Progress& progress)> fromFiles; ///< empty: without files
     /// Bodies that the connected tracker must see where it is measured with that, the pointer first; empty: it cannot
     /// be.
     std::vector<PoseRole> liveRoles;
     /// The steps of it. Throws InvalidInput for a room in which there is nothing to touch.
     std::vector<LiveStep> (*liveSteps)(const Rig& rig, const Installation& room) = nullptr;
-    std::function<LinkOutcome(const LiveTask& task, const Progress& progress)> fromLive;
-    /// The same with the camera, projectors and servos that are connected. Empty: it cannot be.
-    std::function<LinkOutcome(const TableTask& task, const Progress& progress)> onTable;
+    bool isOnTable = false; ///< it can be measured with the camera and projectors that are connected
+    bool isMoved = false;   ///< and with the servos
+
+    [[nodiscard]] bool isWithTracker() const noexcept { return !liveRoles.empty(); }
 };
 
 /// In the order in which they are measured.
 [[nodiscard]] const std::vector<ChainLink>& chainLinks();
+/// What it came to is no figure of the room, but that the room is as it was.
+[[nodiscard]] inline bool isCheck(const ChainLink& link) { return link.stage != nullptr && !link.stage->origin; }
+/// Null where it changes nothing.
+[[nodiscard]] const Origin* originOf(const ChainLink& link, const Installation& room);
+
+/// What a stage came to, as it is read.
+[[nodiscard]] LinkOutcome outcomeOf(MeasuredStage measured, const StageSite& site);
 
 /// Where a link stands.
 struct LinkStand {

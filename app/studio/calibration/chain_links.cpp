@@ -7,13 +7,8 @@
 #include "app/studio/calibration/chain.h"
 #include "app/studio/calibration/chain_files.h"
 #include "app/studio/calibration/chain_live.h"
-#include "calibration/delays/delays_lab.h"
-#include "calibration/lab/registration_lab.h"
-#include "calibration/light/light_lab.h"
-#include "calibration/servos/servo_lab.h"
-#include "calibration/verify/verify_lab.h"
 
-// The links themselves: what each is for, what happens, what it builds on, and how it is measured in the lab.
+// The links themselves: what each is for, what happens, what it builds on, and how what came of it is read.
 
 namespace lumorph::studio {
 namespace {
@@ -61,12 +56,8 @@ LinkOutcome outcomeOf(const Registration& measured) {
     return outcome;
 }
 
-template <auto Measure> LinkOutcome registered(const LinkTask& task, const Progress& progress) {
-    return outcomeOf(Measure(*task.rig, task.believed, task.truth, task.seed, progress, {}));
-}
-
 /// A recording that is refused before anything is fitted is a refusal as any other.
-template <auto Read, class Task> LinkOutcome recorded(const Task& task, const Progress& progress) {
+template <auto Read> LinkOutcome recorded(const FileTask& task, const Progress& progress) {
     Registration refusal;
     try {
         return outcomeOf(Read(task, progress));
@@ -85,16 +76,12 @@ ChainLink projectorLink() {
     link.how = {
         QObject::tr("A board is laid into the light, some poses one after the other, and photographed under patterns."),
         QObject::tr("It has a sequence of its own, which says at each step what to do.")};
-    link.origin = [](const Installation& room) {
-        return room.projectors.empty() ? nullptr : &room.projectors.front().lens;
-    };
     return link;
 }
 
 QString percent(double share) { return QString("%1 %").arg(100.0 * share, 0, 'f', 1); }
 
-LinkOutcome measureLight(const LinkTask& task, const Progress& progress) {
-    const LightCalibration measured = measureLightInLab(*task.rig, task.believed, task.truth, task.seed, progress);
+LinkOutcome outcomeOf(const LightCalibration& measured) {
     LinkOutcome outcome = judged(measured);
     if (measured.refusal) return outcome;
     outcome.installation = measured.room;
@@ -123,6 +110,8 @@ LinkOutcome measureLight(const LinkTask& task, const Progress& progress) {
 
 ChainLink lightLink() {
     ChainLink link;
+    link.isOnTable = true;
+    link.stage = &calibrationStage("light");
     link.id = LinkId::light;
     link.key = "light";
     link.title = QObject::tr("Light");
@@ -134,30 +123,12 @@ ChainLink lightLink() {
         QObject::tr("Flat colours are projected and photographed at several exposures: a few minutes."),
         QObject::tr("Once for each projector you are asked to cover its lens for a moment.")};
     link.needs = {LinkId::projector};
-    link.origin = [](const Installation& room) -> const Origin* {
-        const auto on = std::ranges::find_if(room.projectors, &InstalledProjector::enabled);
-        return on == room.projectors.end() ? nullptr : &on->response;
-    };
-    link.apply = [](const Installation& measured, Installation& room) {
-        for (std::size_t p = 0; p < std::min(room.projectors.size(), measured.projectors.size()); ++p) {
-            const InstalledProjector& from = measured.projectors[p];
-            InstalledProjector& to = room.projectors[p];
-            to.gain = from.gain;
-            to.black = from.black;
-            to.gamma = from.gamma;
-            to.responseCurve = from.responseCurve;
-            to.response = from.response;
-        }
-        room.deviceColor = measured.deviceColor;
-        room.tableColor = measured.tableColor;
-        room.origins.colors = measured.origins.colors;
-    };
-    link.inLab = measureLight;
     return link;
 }
 
 ChainLink pointerLink() {
     ChainLink link;
+    link.stage = &calibrationStage("pointer");
     link.id = LinkId::pointer;
     link.key = "pointer";
     link.title = QObject::tr("Pointer tip");
@@ -166,25 +137,19 @@ ChainLink pointerLink() {
         QObject::tr("Set the tip into a dimple and swing the pointer to all sides for 15 seconds."),
         QObject::tr("Then hold it in three other dimples, twice each, as differently as you can: these points the fit "
                     "does not see.")};
-    link.origin = [](const Installation& room) { return &room.origins.pointer; };
-    link.apply = [](const Installation& measured, Installation& room) {
-        room.pointerTip = measured.pointerTip;
-        room.origins.pointer = measured.origins.pointer;
-    };
-    link.inLab = registered<measurePointerInLab>;
     link.files = {
         {"swings", QObject::tr("Swings"), QObject::tr("The pointer swung to all sides, its tip in a dimple.")},
         {"rests", QObject::tr("Other dimples"),
          QObject::tr("Its tip set into three other dimples for a second, each twice and held differently.")}};
-    link.fromFiles = recorded<pointerFromFiles, FileTask>;
+    link.fromFiles = recorded<pointerFromFiles>;
     link.liveRoles = {PoseRole::pointer};
     link.liveSteps = pointerSteps;
-    link.fromLive = recorded<pointerFromLive, LiveTask>;
     return link;
 }
 
 ChainLink trackerLink() {
     ChainLink link;
+    link.stage = &calibrationStage("tracker");
     link.id = LinkId::tracker;
     link.key = "tracker";
     link.title = QObject::tr("Tracker and projector in one world");
@@ -193,26 +158,20 @@ ChainLink trackerLink() {
                 QObject::tr("Touch each with the pointer's tip for a second."),
                 QObject::tr("Four more dots check the result.")};
     link.needs = {LinkId::projector, LinkId::pointer};
-    link.origin = [](const Installation& room) { return &room.origins.tracker; };
-    link.apply = [](const Installation& measured, Installation& room) {
-        room.worldFromTracker = measured.worldFromTracker;
-        room.origins.tracker = measured.origins.tracker;
-    };
-    link.inLab = registered<measureTrackerInLab>;
     link.files = {
         {"tracked", QObject::tr("Tracked body"),
          QObject::tr("A body that is moved and turned about two axes, in the tracker's world.")},
         {"seen", QObject::tr("Seen in the room"),
          QObject::tr("The board or camera that is fixed to it, in the room's world; its clock may be another.")}};
-    link.fromFiles = recorded<trackerFromFiles, FileTask>;
+    link.fromFiles = recorded<trackerFromFiles>;
     link.liveRoles = {PoseRole::pointer};
     link.liveSteps = trackerSteps;
-    link.fromLive = recorded<trackerFromLive, LiveTask>;
     return link;
 }
 
 ChainLink deviceLink() {
     ChainLink link;
+    link.stage = &calibrationStage("body");
     link.id = LinkId::device;
     link.key = "device";
     link.title = QObject::tr("Device on its body");
@@ -222,26 +181,20 @@ ChainLink deviceLink() {
                 QObject::tr("Touch each with the pointer's tip; the device may be moved meanwhile."),
                 QObject::tr("Four more corners check the result.")};
     link.needs = {LinkId::pointer};
-    link.origin = [](const Installation& room) { return &room.origins.deviceBody; };
-    link.apply = [](const Installation& measured, Installation& room) {
-        room.bodyFromDevice = measured.bodyFromDevice;
-        room.origins.deviceBody = measured.origins.deviceBody;
-    };
-    link.inLab = registered<measureDeviceInLab>;
     link.files = {{"touches", QObject::tr("Pointer"),
                    QObject::tr("Its tip rests for a second on one point of the device after the other.")},
                   {"body", QObject::tr("Body of the device"), QObject::tr("Tracked at the same time.")},
                   {"model", QObject::tr("Points of the model"),
                    QObject::tr("Rows of name, x, y, z in the device's frame, metres.")}};
-    link.fromFiles = recorded<deviceFromFiles, FileTask>;
+    link.fromFiles = recorded<deviceFromFiles>;
     link.liveRoles = {PoseRole::pointer, PoseRole::device};
     link.liveSteps = deviceSteps;
-    link.fromLive = recorded<deviceFromLive, LiveTask>;
     return link;
 }
 
 ChainLink eyeLink() {
     ChainLink link;
+    link.stage = &calibrationStage("eye");
     link.id = LinkId::eye;
     link.key = "eye";
     link.title = QObject::tr("Eye");
@@ -251,15 +204,8 @@ ChainLink eyeLink() {
         QObject::tr("Eight marks, from other places and with the head turned otherwise."),
         QObject::tr("Four more check the result.")};
     link.needs = {LinkId::pointer, LinkId::tracker};
-    link.origin = [](const Installation& room) { return &room.origins.eyeOffset; };
-    link.apply = [](const Installation& measured, Installation& room) {
-        room.eyeFromHead = measured.eyeFromHead;
-        room.origins.eyeOffset = measured.origins.eyeOffset;
-    };
-    link.inLab = registered<measureEyeInLab>;
     link.liveRoles = {PoseRole::pointer, PoseRole::head};
     link.liveSteps = eyeSteps;
-    link.fromLive = recorded<eyeFromLive, LiveTask>;
     return link;
 }
 
@@ -290,30 +236,18 @@ LinkOutcome outcomeOf(const ServoMeasurement& measured, const Rig& rig) {
 
 ChainLink servosLink() {
     ChainLink link;
+    link.stage = &calibrationStage("servos");
     link.id = LinkId::servos;
     link.key = "servos";
     link.title = QObject::tr("Servos");
     link.purpose = QObject::tr("Where each servo really goes, with its play: pictures fit the surface as it stands.");
+    link.isMoved = true;
     link.warning = QObject::tr("Hands off: the servos move");
     link.how = {QObject::tr("Each servo goes slowly through its levels, up and down."),
                 QObject::tr("At each of them patterns are projected and photographed: two to three minutes in all."),
                 QObject::tr("STOP ends it at any time, and nothing of it is kept.")};
     link.needs = {LinkId::projector};
-    link.origin = [](const Installation& room) { return &room.origins.servos; };
-    link.apply = [](const Installation& measured, Installation& room) {
-        const std::vector<MeasuredServo> before = std::exchange(room.servos, measured.servos);
-        for (MeasuredServo& servo : room.servos) { // lags are another link's
-            const auto known = std::ranges::find(before, servo.actuator, &MeasuredServo::actuator);
-            servo.lagSeconds = known == before.end() ? 0.0 : known->lagSeconds;
-        }
-        room.origins.servos = measured.origins.servos;
-    };
-    link.inLab = [](const LinkTask& task, const Progress& progress) {
-        return outcomeOf(measureServosInLab(*task.rig, task.believed, task.truth, task.seed, progress), *task.rig);
-    };
-    link.onTable = [](const TableTask& task, const Progress& progress) {
-        return outcomeOf(measureServosOnBench(*task.rig, task.believed, task.seed, *task.bench, progress), *task.rig);
-    };
+    link.isOnTable = true;
     return link;
 }
 
@@ -321,18 +255,21 @@ QString milliseconds(const MeasuredDelay& delay) {
     return QString("%1 ± %2 ms").arg(1e3 * delay.seconds, 0, 'f', 1).arg(1e3 * delay.sigma, 0, 'f', 1);
 }
 
-LinkOutcome measureDelays(const LinkTask& task, const Progress& progress) {
-    const MeasuredDelays measured = measureDelaysInLab(*task.rig, task.believed, task.truth, task.seed, progress);
+LinkOutcome outcomeOf(const MeasuredDelays& measured) {
     LinkOutcome outcome = judged(measured);
     if (measured.refusal) return outcome;
     outcome.installation = measured.installation;
-    outcome.summary = QObject::tr("Carried at 30 cm/s the device is lit %1 beside instead of %2.")
-                          .arg(millimetres(measured.gain->with.atSpeed), millimetres(measured.gain->without.atSpeed));
+    outcome.summary = QString::fromStdString(measured.summary);
     outcome.figures = {{QObject::tr("From a frame to its light"), milliseconds(measured.light)},
                        {QObject::tr("Age of poses when they arrive"), milliseconds(measured.tracker)},
-                       {QObject::tr("Both together, by a mark that follows a hand"), milliseconds(measured.mark)},
-                       {QObject::tr("Beside the whole way, looking ahead"), millimetres(measured.gain->with.always)},
-                       {QObject::tr("Beside the whole way, without"), millimetres(measured.gain->without.always)}};
+                       {QObject::tr("Both together, by a mark that follows a hand"), milliseconds(measured.mark)}};
+    if (measured.gain) {
+        const auto& [with, without] = *measured.gain;
+        outcome.summary = QObject::tr("Carried at 30 cm/s the device is lit %1 beside instead of %2.")
+                              .arg(millimetres(with.atSpeed), millimetres(without.atSpeed));
+        outcome.figures.push_back({QObject::tr("Beside the whole way, looking ahead"), millimetres(with.always)});
+        outcome.figures.push_back({QObject::tr("Beside the whole way, without"), millimetres(without.always)});
+    }
     for (const MeasuredDelays::Servo& servo : measured.servos)
         outcome.figures.push_back(
             {QObject::tr("%1: lag").arg(QString::fromStdString(servo.name)), milliseconds(servo.step.lag)});
@@ -341,6 +278,7 @@ LinkOutcome measureDelays(const LinkTask& task, const Progress& progress) {
 
 ChainLink delaysLink() {
     ChainLink link;
+    link.stage = &calibrationStage("delays");
     link.id = LinkId::delays;
     link.key = "delays";
     link.title = QObject::tr("Delays");
@@ -352,9 +290,6 @@ ChainLink delaysLink() {
         QObject::tr("Carry a tracked body that a projected mark follows, then turn a board before tracker and camera."),
         QObject::tr("At last each servo makes some steps: about three minutes in all. STOP ends it at any time.")};
     link.needs = {LinkId::tracker};
-    link.origin = [](const Installation& room) { return &room.origins.delays; };
-    link.apply = takeDelays;
-    link.inLab = measureDelays;
     return link;
 }
 
@@ -377,24 +312,40 @@ LinkOutcome outcomeOf(const VerifiedRoom& verified, const Installation& believed
 
 ChainLink checkLink() {
     ChainLink link;
+    link.stage = &calibrationStage("verify");
     link.id = LinkId::check;
     link.key = "check";
     link.title = QObject::tr("Check");
     link.purpose = QObject::tr("One minute before a show: is all still where it was?");
+    link.isMoved = true;
     link.warning = QObject::tr("Hands off: the servos move");
     link.how = {QObject::tr("The device takes two bends; patterns are projected on it and photographed."),
                 QObject::tr("Where the light lies beside, it is told what has moved, and one button puts it right.")};
-    link.apply = takeCorrections;
-    link.inLab = [](const LinkTask& task, const Progress& progress) {
-        return outcomeOf(measureVerifyInLab(*task.rig, task.believed, task.truth, task.seed, progress), task.believed);
-    };
-    link.onTable = [](const TableTask& task, const Progress& progress) {
-        return outcomeOf(verifyRoom(*task.rig, task.believed, *task.bench, progress), task.believed);
-    };
+    link.isOnTable = true;
     return link;
 }
 
+LinkOutcome outcomeOf(const StageResult& result, const StageSite& site) {
+    if (const auto* servos = std::get_if<ServoMeasurement>(&result)) return outcomeOf(*servos, *site.rig);
+    if (const auto* check = std::get_if<VerifiedRoom>(&result)) return outcomeOf(*check, site.room);
+    if (const auto* light = std::get_if<LightCalibration>(&result)) return outcomeOf(*light);
+    if (const auto* delays = std::get_if<MeasuredDelays>(&result)) return outcomeOf(*delays);
+    return outcomeOf(std::get<Registration>(result));
+}
+
 } // namespace
+
+LinkOutcome outcomeOf(MeasuredStage measured, const StageSite& site) {
+    LinkOutcome outcome = outcomeOf(measured.result, site);
+    outcome.isSimulated = measured.recording.source.isSimulated();
+    outcome.recording = std::make_shared<const StageRecording>(std::move(measured.recording));
+    return outcome;
+}
+
+const Origin* originOf(const ChainLink& link, const Installation& room) {
+    if (!link.stage) return room.projectors.empty() ? nullptr : &room.projectors.front().lens;
+    return link.stage->origin ? link.stage->origin(room) : nullptr;
+}
 
 const std::vector<ChainLink>& chainLinks() {
     static const std::vector<ChainLink> links{projectorLink(), lightLink(),  pointerLink(), trackerLink(), deviceLink(),

@@ -24,21 +24,6 @@ std::vector<LiveStep> dotSteps(const Rig& rig, const Installation& room, std::si
     return steps;
 }
 
-Touch touchOf(const LiveTask& task, std::size_t step, std::optional<PoseRole> body) {
-    const LiveTake& take = task.takes.at(step);
-    Touch touch{task.plan.steps.at(step).name, take.at(PoseRole::pointer), std::nullopt};
-    if (body) touch.body = take.at(*body);
-    return touch;
-}
-
-/// How many of so many steps the fit may see.
-std::size_t fitted(const LiveTask& task) {
-    if (task.takes.size() <= kFresh)
-        throw InvalidInput("the plan", "it has no more than " + std::to_string(task.takes.size()) + " points",
-                           "make room on the lit table beside the device");
-    return task.takes.size() - kFresh;
-}
-
 } // namespace
 
 std::vector<LiveStep> pointerSteps(const Rig&, const Installation&) {
@@ -55,25 +40,9 @@ std::vector<LiveStep> pointerSteps(const Rig&, const Installation&) {
     return steps;
 }
 
-Registration pointerFromLive(const LiveTask& task, const Progress& progress) {
-    PointerCapture capture;
-    capture.swings = task.takes.at(0).at(PoseRole::pointer);
-    for (std::size_t k = 1; k + 1 < task.takes.size(); k += 2)
-        capture.fresh.push_back({touchOf(task, k, std::nullopt), touchOf(task, k + 1, std::nullopt)});
-    return registerPointer(capture, task.believed, progress);
-}
-
 std::vector<LiveStep> trackerSteps(const Rig& rig, const Installation& room) {
     return dotSteps(rig, room, kDots + kFresh, "dot",
                     QObject::tr("Touch the lit dot with the tip, and rest: %1 of %2"));
-}
-
-Registration trackerFromLive(const LiveTask& task, const Progress& progress) {
-    DotCapture capture;
-    for (std::size_t k = 0; k < task.takes.size(); ++k)
-        (k < fitted(task) ? capture.dots : capture.fresh)
-            .push_back({0, task.plan.steps.at(k).dot.value().pixel, touchOf(task, k, std::nullopt)});
-    return registerTracker(capture, task.believed, progress);
 }
 
 std::vector<LiveStep> deviceSteps(const Rig& rig, const Installation&) {
@@ -86,28 +55,64 @@ std::vector<LiveStep> deviceSteps(const Rig& rig, const Installation&) {
     return steps;
 }
 
-Registration deviceFromLive(const LiveTask& task, const Progress& progress) {
-    LandmarkCapture capture;
-    for (std::size_t k = 0; k < task.takes.size(); ++k) {
-        const PlannedLandmark& corner = task.plan.steps.at(k).corner.value();
-        (k < fitted(task) ? capture.touches : capture.fresh)
-            .push_back({corner.onModel, corner.outward, touchOf(task, k, PoseRole::device)});
-    }
-    return registerDevice(capture, task.believed, progress);
-}
-
 std::vector<LiveStep> eyeSteps(const Rig& rig, const Installation& room) {
     return dotSteps(
         rig, room, kAlignments + kFresh, "mark",
         QObject::tr("Close one eye, cover the lit dot with the tip a good way above it, and rest: %1 of %2"));
 }
 
-Registration eyeFromLive(const LiveTask& task, const Progress& progress) {
+RecordingSource LiveBench::source() const {
+    return {isSimulated_ ? RecordingSource::Kind::rehearsal : RecordingSource::Kind::table,
+            isSimulated_ ? "a simulated tracker" : "a tracked pointer", utcDate(), 0};
+}
+
+Touch LiveBench::touchOf(std::size_t step, std::optional<PoseRole> body) const {
+    const LiveTake& take = takes_.at(step);
+    Touch touch{plan_.steps.at(step).name, take.at(PoseRole::pointer), std::nullopt};
+    if (body) touch.body = take.at(*body);
+    return touch;
+}
+
+/// How many of the steps the fit may see.
+std::size_t LiveBench::fitted() const {
+    if (takes_.size() <= kFresh)
+        throw InvalidInput("the plan", "it has no more than " + std::to_string(takes_.size()) + " points",
+                           "make room on the lit table beside the device");
+    return takes_.size() - kFresh;
+}
+
+PointerCapture LiveBench::recordPointer(const StageSite&, const Progress&) {
+    PointerCapture capture;
+    capture.swings = takes_.at(0).at(PoseRole::pointer);
+    for (std::size_t k = 1; k + 1 < takes_.size(); k += 2)
+        capture.fresh.push_back({touchOf(k, std::nullopt), touchOf(k + 1, std::nullopt)});
+    return capture;
+}
+
+DotCapture LiveBench::recordDots(const StageSite&, const Progress&) {
+    DotCapture capture;
+    for (std::size_t k = 0; k < takes_.size(); ++k)
+        (k < fitted() ? capture.dots : capture.fresh)
+            .push_back({0, plan_.steps.at(k).dot.value().pixel, touchOf(k, std::nullopt)});
+    return capture;
+}
+
+LandmarkCapture LiveBench::recordLandmarks(const StageSite&, const Progress&) {
+    LandmarkCapture capture;
+    for (std::size_t k = 0; k < takes_.size(); ++k) {
+        const PlannedLandmark& corner = plan_.steps.at(k).corner.value();
+        (k < fitted() ? capture.touches : capture.fresh)
+            .push_back({corner.onModel, corner.outward, touchOf(k, PoseRole::device)});
+    }
+    return capture;
+}
+
+EyeCapture LiveBench::recordEye(const StageSite&, const Progress&) {
     EyeCapture capture;
-    for (std::size_t k = 0; k < task.takes.size(); ++k)
-        (k < fitted(task) ? capture.alignments : capture.fresh)
-            .push_back({task.plan.steps.at(k).dot.value().place, touchOf(task, k, PoseRole::head)});
-    return registerEye(capture, task.believed, progress);
+    for (std::size_t k = 0; k < takes_.size(); ++k)
+        (k < fitted() ? capture.alignments : capture.fresh)
+            .push_back({plan_.steps.at(k).dot.value().place, touchOf(k, PoseRole::head)});
+    return capture;
 }
 
 } // namespace lumorph::studio

@@ -4,12 +4,15 @@
 
 #include <QObject>
 
+#include "app/studio/calibration/chain_live.h"
+#include "calibration/stages/lab_bench.h"
 #include "core/base/error.h"
 
 namespace lumorph::studio {
 namespace {
 
 constexpr auto kChainPlace = "chain"; // of jobs and notices
+constexpr auto kKeepPlace = "chain.keep";
 
 QString wordsOfError(const std::exception& error) {
     const Notice notice = noticeOf(error);
@@ -23,32 +26,39 @@ ChainStep measuringStep(const ChainState& state, ChainStep::Tone tone, const QSt
                         const QString& inLab) {
     using What = ChainStep::Do;
     const ChainLink& link = chainLinks()[state.chosen];
-    if (!link.inLab) return {What::sequence, tone, title, text, QObject::tr("Open it")};
+    if (!link.stage) return {What::sequence, tone, title, text, QObject::tr("Open it")};
     const LinkWay way = wayOf(state, state.chosen);
     if (way == LinkWay::lab) return {What::measure, tone, title, text, inLab};
     if (way == LinkWay::live)
         return {What::measure, tone, title, text,
-                link.onTable ? QObject::tr("Begin, hands off") : QObject::tr("Begin, with the tracker")};
+                link.isWithTracker() ? QObject::tr("Begin, with the tracker")
+                : link.isMoved       ? QObject::tr("Begin, hands off")
+                                     : QObject::tr("Begin, with the camera")};
     if (const auto missing = missingFile(state, state.chosen))
-        return {What::chooseFile, tone, title, text, QObject::tr("Choose: %1").arg(link.files[*missing].title)};
-    return {What::measure, tone, title, text, QObject::tr("Read the recordings")};
+        return {What::chooseFile, tone, title, text,
+                *missing < link.files.size() ? QObject::tr("Choose: %1").arg(link.files[*missing].title)
+                                             : QObject::tr("Choose a recording")};
+    return {What::measure, tone, title, text, QObject::tr("Solve it")};
 }
 
 } // namespace
 
 LinkWay wayOf(const ChainState& state, std::size_t link) {
     const ChainLink& measured = chainLinks()[link];
-    const bool isPossible = state.way == LinkWay::live    ? measured.fromLive || measured.onTable
-                            : state.way == LinkWay::files ? measured.fromFiles != nullptr
+    const bool isPossible = state.way == LinkWay::live    ? measured.isWithTracker() || measured.isOnTable
+                            : state.way == LinkWay::files ? measured.stage != nullptr
                                                           : true;
     return isPossible ? state.way : LinkWay::lab;
 }
 
 std::optional<std::size_t> missingFile(const ChainState& state, std::size_t link) {
+    const std::size_t count = chainLinks()[link].files.size();
     const auto chosen = state.files.find(link);
-    for (std::size_t k = 0; k < chainLinks()[link].files.size(); ++k)
-        if (chosen == state.files.end() || chosen->second[k].empty()) return k;
-    return std::nullopt;
+    const bool isAny = chosen != state.files.end();
+    if (isAny && !chosen->second[count].empty()) return std::nullopt;
+    for (std::size_t k = 0; k < count; ++k)
+        if (!isAny || chosen->second[k].empty()) return k;
+    return count > 0 ? std::nullopt : std::optional(count);
 }
 
 ChainStep stepOf(const ChainState& state) {
@@ -130,13 +140,12 @@ ChainService::ChainService(StudioDocument& document, StudioLoop& loop, LabRoom& 
         state_.live.reset();
         const std::shared_ptr<const Rig>& rig = document_.state().rig.rig;
         if (!state_.running || !rig) return cancel();
-        run(
-            *state_.running,
-            [measure = chainLinks()[*state_.running].fromLive,
-             task = LiveTask{rig, *document_.state().installation, plan, takes}](const Progress& progress) {
-                return measure(task, progress);
-            },
-            isSimulated);
+        run(*state_.running,
+            [stage = chainLinks()[*state_.running].stage, site = StageSite{rig, *document_.state().installation}, plan,
+             takes, isSimulated](const Progress& progress) {
+                LiveBench bench(plan, takes, isSimulated);
+                return outcomeOf(measureStage(*stage, site, bench, progress), site);
+            });
     };
     connect(&live, &LiveService::finished, this, solve);
     connect(&jobs, &Jobs::progressed, this, [this, &jobs](int id) {
@@ -167,14 +176,15 @@ void ChainService::setWay(LinkWay way) {
     state_.goesOn = false;
     state_.way = way;
     for (std::size_t link = 0; link < chainLinks().size(); ++link)
-        if (chainLinks()[link].fromFiles || chainLinks()[link].fromLive || chainLinks()[link].onTable) forget(link);
+        if (chainLinks()[link].stage) forget(link);
     emit changed();
 }
 
 void ChainService::setFile(std::size_t link, std::size_t file, const std::filesystem::path& path) {
-    if (link >= chainLinks().size() || file >= chainLinks()[link].files.size()) return;
+    if (link >= chainLinks().size() || file > chainLinks()[link].files.size()) return;
     auto& files = state_.files[link];
-    files.resize(chainLinks()[link].files.size());
+    files.resize(chainLinks()[link].files.size() + 1);
+    if (file + 1 < files.size()) files.back().clear(); // what was chosen last is what is read
     files[file] = path;
     forget(link);
     emit changed();
@@ -218,7 +228,7 @@ void ChainService::goOn() {
     const auto next = nextLink(state_.stands);
     // In a real room nothing of the lab slips in between.
     const auto waitsForUser = [this](std::size_t link) {
-        if (!chainLinks()[link].inLab) return true;
+        if (!chainLinks()[link].stage) return true;
         if (state_.way == LinkWay::files) return wayOf(state_, link) == LinkWay::lab || missingFile(state_, link);
         return state_.way == LinkWay::live;
     };
@@ -235,25 +245,34 @@ void ChainService::goOn() {
 /// Null where it cannot be measured now.
 std::function<LinkOutcome(const Progress&)> ChainService::workOf(std::size_t link) {
     const ChainLink& measured = chainLinks()[link];
-    const Installation& room = *document_.state().installation;
+    const std::shared_ptr<const Rig>& rig = document_.state().rig.rig;
+    if (!rig || !measured.stage) return nullptr;
+    const StageSite site{rig, *document_.state().installation};
     if (wayOf(state_, link) == LinkWay::files) {
         if (missingFile(state_, link)) return nullptr;
-        return [run = measured.fromFiles, task = FileTask{room, state_.files[link]}](const Progress& progress) {
-            return run(task, progress);
+        const std::vector<std::filesystem::path>& files = state_.files[link];
+        if (files.back().empty())
+            return [run = measured.fromFiles, task = FileTask{site.room, files}](const Progress& progress) {
+                return run(task, progress);
+            };
+        return [stage = measured.stage, site, folder = files.back()](const Progress& progress) {
+            StageRecording recording = readStageRecording(folder, progress.part(0.0, 0.2));
+            StageResult result = solveStage(*stage, recording, site, progress.part(0.2, 1.0));
+            return outcomeOf(MeasuredStage{std::move(recording), std::move(result)}, site);
         };
     }
-    const std::shared_ptr<const Rig>& rig = document_.state().rig.rig;
-    if (!rig || !measured.inLab) return nullptr;
     lab_.unpack();
-    return [run = measured.inLab, task = LinkTask{rig, room, lab_.truth(), seed_++}](const Progress& progress) {
-        return run(task, progress);
+    return [stage = measured.stage, site, truth = lab_.truth(), seed = seed_++](const Progress& progress) {
+        LabBench bench(*site.rig, truth, seed);
+        return outcomeOf(measureStage(*stage, site, bench, progress), site);
     };
 }
 
 void ChainService::begin(std::size_t link) {
     if (state_.running) return;
-    if (wayOf(state_, link) == LinkWay::live) return chainLinks()[link].onTable ? beginOnTable(link) : beginLive(link);
-    if (auto work = workOf(link)) run(link, std::move(work), wayOf(state_, link) == LinkWay::lab);
+    if (wayOf(state_, link) == LinkWay::live)
+        return chainLinks()[link].isWithTracker() ? beginLive(link) : beginOnTable(link);
+    if (auto work = workOf(link)) run(link, std::move(work));
 }
 
 void ChainService::beginLive(std::size_t link) {
@@ -285,11 +304,10 @@ void ChainService::beginOnTable(std::size_t link) {
     forget(link);
     try {
         if (!rig) throw InvalidInput("the device", "there is none", "open a rig");
-        run(
-            link,
-            [measure = chainLinks()[link].onTable, task = TableTask{rig, room, table_(room), seed_++}](
-                const Progress& progress) { return measure(task, progress); },
-            false);
+        run(link, [stage = chainLinks()[link].stage, site = StageSite{rig, room},
+                   bench = table_(room, chainLinks()[link].isMoved)](const Progress& progress) {
+            return outcomeOf(measureStage(*stage, site, *bench, progress), site);
+        });
     } catch (const std::exception& error) {
         fail(link, error);
     }
@@ -302,23 +320,18 @@ void ChainService::fail(std::size_t link, const std::exception& error) {
     emit changed();
 }
 
-void ChainService::run(std::size_t link, std::function<LinkOutcome(const Progress&)> work, bool isSimulated) {
+void ChainService::run(std::size_t link, std::function<LinkOutcome(const Progress&)> work) {
     withdrawQuestion();
     state_.running = link;
     state_.fraction = 0.0;
     state_.stage.clear();
     state_.outcomes.erase(link);
+    state_.kept.erase(link);
     state_.troubles.erase(link);
     emit changed();
     if (!chainLinks()[link].warning.isEmpty()) emit handsOff();
     jobs_.runWith<LinkOutcome>(
-        kChainPlace, kChainPlace, QObject::tr("Measuring: %1").arg(chainLinks()[link].title),
-        [work = std::move(work), isSimulated, before = document_.state().installation](const Progress& progress) {
-            LinkOutcome outcome = work(progress);
-            outcome.isSimulated = isSimulated;
-            if (isSimulated && outcome.installation) markSimulated(*before, *outcome.installation);
-            return outcome;
-        },
+        kChainPlace, kChainPlace, QObject::tr("Measuring: %1").arg(chainLinks()[link].title), std::move(work),
         [this, link](LinkOutcome outcome) { take(link, std::move(outcome)); },
         [this, link](const std::exception& error) { fail(link, error); });
 }
@@ -327,7 +340,7 @@ void ChainService::take(std::size_t link, LinkOutcome outcome) {
     state_.running.reset();
     const bool good = outcome.isGood;
     const bool doubtsPointer = outcome.doubtsTracker && chainLinks()[link].id == LinkId::tracker;
-    if (chainLinks()[link].origin == nullptr) checked_ = {good ? utcDate() : std::string(), outcome.isSimulated};
+    if (isCheck(chainLinks()[link])) checked_ = {good ? utcDate() : std::string(), outcome.isSimulated};
     state_.outcomes[link] = std::move(outcome);
     if (doubtsPointer) doubtPointer();
     follow();
@@ -371,6 +384,21 @@ bool ChainService::useOf(std::size_t link) {
         return false;
     }
     return take_(versionOf(chainLinks()[link], found->second, *document_.state().installation));
+}
+
+void ChainService::keepRecording(std::size_t link, const std::filesystem::path& folder) {
+    const auto found = state_.outcomes.find(link);
+    if (found == state_.outcomes.end() || !found->second.recording) return;
+    jobs_.run<int>(
+        kKeepPlace, kKeepPlace, QObject::tr("Writing the recording"),
+        [recording = found->second.recording, folder](const Progress& progress) {
+            writeStageRecording(*recording, folder, progress);
+            return 0;
+        },
+        [this, link, folder](int) {
+            state_.kept[link] = folder;
+            emit changed();
+        });
 }
 
 void ChainService::cancel() {

@@ -32,14 +32,17 @@ struct ChainState {
     std::map<std::size_t, QString> troubles;     ///< why a measurement came to nothing
     LinkWay way = LinkWay::lab;    ///< of links that can be measured so; the others are measured in the lab
     std::optional<LiveStand> live; ///< what is done just now with the connected tracker
-    std::map<std::size_t, std::vector<std::filesystem::path>> files; ///< by links; empty paths: not chosen yet
-    bool goesOn = false;                                             ///< the rest follows by itself
+    /// By links: those of `ChainLink::files`, and as the last one the folder of a recording of ours. Empty paths: not
+    /// chosen yet.
+    std::map<std::size_t, std::vector<std::filesystem::path>> files;
+    std::map<std::size_t, std::filesystem::path> kept; ///< folders of recordings, by links
+    bool goesOn = false;                               ///< the rest follows by itself
     std::vector<std::string> askedBeside; ///< what the room holds, while the chosen link asks (SimulatedQuestion)
 };
 
 /// How a link is measured now.
 [[nodiscard]] LinkWay wayOf(const ChainState& state, std::size_t link);
-/// Of its recordings the first that was not chosen yet.
+/// Of its files the first that was not chosen yet; as many as there are: the folder of a recording.
 [[nodiscard]] std::optional<std::size_t> missingFile(const ChainState& state, std::size_t link);
 
 /// The one thing that is to be done with the chosen link.
@@ -61,7 +64,8 @@ public:
     /// Puts a measured installation into the document, as a step of undo and a version; false where that failed.
     using VersionTaker = std::function<bool(InstallationVersion version)>;
     /// The device on the table. Throws DeviceError with what to do where not all of it is connected.
-    using TableOpener = std::function<std::shared_ptr<DeviceBench>(const Installation& room)>;
+    /// `isMoved`: with its servos.
+    using TableOpener = std::function<std::shared_ptr<Bench>(const Installation& room, bool isMoved)>;
     /// STOP of the loop ends what is measured. The first link that is measured in the lab unpacks it.
     ChainService(StudioDocument& document, StudioLoop& loop, LabRoom& lab, Jobs& jobs, Notices& notices,
                  LiveService& live, TableOpener table, VersionTaker take);
@@ -78,6 +82,8 @@ public:
     /// and with the first that asks something of the user: a recording, or to touch something.
     void measureRest();
     void use();
+    /// What devices said while it was measured, into a new folder; what fails is a notice.
+    void keepRecording(std::size_t link, const std::filesystem::path& folder);
     void cancel();
 
 signals:
@@ -88,7 +94,7 @@ private:
     void begin(std::size_t link);
     void beginLive(std::size_t link);
     void beginOnTable(std::size_t link);
-    void run(std::size_t link, std::function<LinkOutcome(const Progress&)> work, bool isSimulated);
+    void run(std::size_t link, std::function<LinkOutcome(const Progress&)> work);
     void withdrawQuestion();
     void fail(std::size_t link, const std::exception& error);
     void forget(std::size_t link);

@@ -12,6 +12,8 @@
 #include <QTimer>
 
 #include "calibration/capture/pose_capture.h"
+#include "calibration/light/camera_light.h"
+#include "calibration/servos/servo_measurement.h"
 #include "core/base/error.h"
 
 namespace lumorph::studio {
@@ -64,14 +66,26 @@ template <class Owned> std::shared_ptr<Owned> ownedByWindow(std::unique_ptr<Owne
     return std::shared_ptr<Owned>(owned.release(), [](Owned* last) { inWindow([last] { delete last; }); });
 }
 
-class TableBench final : public DeviceBench {
+/// Bodies of a table that moves and is photographed: servos, projectors and the room's first camera.
+class DeviceOnTable final : public DeviceBench {
 public:
-    TableBench(const TableParts& parts, const Installation& room)
+    DeviceOnTable(const TableParts& parts, const Installation& room)
         : open_(parts.openCamera), clock_(parts.clock), address_(room.cameras.front().address),
           driver_(ownedByWindow(std::make_unique<Driver>(*parts.devices, driven_))) {
         for (std::size_t k = 0; k < room.projectors.size(); ++k)
             if (room.projectors[k].enabled) displays_[k] = ownedByWindow(parts.openDisplay(k));
     }
+
+    [[nodiscard]] CaptureCamera& camera() {
+        if (!camera_) camera_ = open_(address_);
+        return *camera_;
+    }
+    /// Null: it is off.
+    [[nodiscard]] PatternDisplay* display(std::size_t projector) const {
+        const auto found = displays_.find(projector);
+        return found == displays_.end() ? nullptr : found->second.get();
+    }
+    [[nodiscard]] const std::shared_ptr<const Clock>& clock() const { return clock_; }
 
     void stand(std::span<const double> commanded, const Progress& progress) override {
         progress.report(0.0, "hands off: the servos move");
@@ -91,7 +105,6 @@ public:
 
     [[nodiscard]] std::vector<cv::Mat> photograph(std::size_t projector, const CaptureOrder& order,
                                                   const Progress& progress) override {
-        if (!camera_) camera_ = open_(address_);
         const auto lit = displays_.find(projector);
         if (lit == displays_.end())
             throw InvalidInput("projector " + std::to_string(projector + 1), "it is switched off", "switch it on");
@@ -102,7 +115,7 @@ public:
             PoseCaptureSettings settings;
             settings.order = captured = order;
             settings.clock = clock_;
-            capture = std::make_unique<PoseCapture>(*camera_, *lit->second, std::move(settings));
+            capture = std::make_unique<PoseCapture>(camera(), *lit->second, std::move(settings));
         }
         progress.report(0.0, "photographing");
         CapturedPose pose = capture->capture("check", progress);
@@ -122,30 +135,72 @@ private:
     std::map<std::size_t, std::pair<CaptureOrder, std::unique_ptr<PoseCapture>>> captures_;
 };
 
+/// What is connected as a bench of the stages.
+class TableBench final : public Bench {
+public:
+    TableBench(const TableParts& parts, const Installation& room)
+        : table_(parts, room), isSimulated_(parts.devices->profile().address.starts_with("sim://") &&
+                                            parts.devices->status().phase == LinkPhase::live),
+          camera_(room.cameras.front().address) {}
+
+    [[nodiscard]] RecordingSource source() const override {
+        return {isSimulated_ ? RecordingSource::Kind::rehearsal : RecordingSource::Kind::table, "camera " + camera_,
+                utcDate(), 0};
+    }
+    [[nodiscard]] std::vector<ProjectorPoint> look(const StageSite& site, const std::vector<double>& commanded,
+                                                   const Progress& progress) override {
+        return lookBy(table_, site.room, commanded, progress);
+    }
+    [[nodiscard]] int picturesOfLook(const StageSite& site) const override {
+        return lumorph::picturesOfLook(site.room);
+    }
+    [[nodiscard]] DeviceBench& device(const StageSite&) override { return table_; }
+    [[nodiscard]] LightBench& light(const StageSite& site, const std::optional<WhiteSheet>&,
+                                    const Progress& progress) override {
+        std::vector<PatternDisplay*> displays;
+        std::vector<std::string> names;
+        for (std::size_t k = 0; k < site.room.projectors.size(); ++k) {
+            displays.push_back(table_.display(k));
+            names.push_back(site.room.projectors[k].name);
+        }
+        return light_.emplace(table_.camera(), std::move(displays), std::move(names), progress, table_.clock());
+    }
+    [[nodiscard]] DelaysCapture recordDelays(const StageSite&, const Progress&) override {
+        throw DeviceError("delays at the table", "this version cannot time a connected camera and tracker",
+                          "enter them by hand in Scene; the virtual lab measures its own");
+    }
+
+private:
+    DeviceOnTable table_;
+    std::optional<CameraLight> light_; ///< before the table goes
+    bool isSimulated_;
+    std::string camera_;
+};
+
 /// What stands in the way of a measurement.
 struct Missing {
     QString why, remedy;
 };
-std::optional<Missing> missingOn(const Installation& room, const DeviceService& devices) {
+std::optional<Missing> missingOn(const Installation& room, const DeviceService& devices, bool isMoved) {
     if (room.projectors.empty())
         return Missing{QObject::tr("The room has no projector"), QObject::tr("add one in Scene")};
     if (room.cameras.empty() || room.cameras.front().address.empty())
         return Missing{QObject::tr("The room has no camera of this machine"),
                        QObject::tr("calibrate projector and camera with it first")};
-    if (devices.status().phase != LinkPhase::live)
+    if (isMoved && devices.status().phase != LinkPhase::live)
         return Missing{QObject::tr("The servos are not driven"), QObject::tr("connect and start them in Devices")};
     return std::nullopt;
 }
 
 } // namespace
 
-QString tableObstacle(const Installation& room, const DeviceService& devices) {
-    const std::optional<Missing> missing = missingOn(room, devices);
+QString tableObstacle(const Installation& room, const DeviceService& devices, bool isMoved) {
+    const std::optional<Missing> missing = missingOn(room, devices, isMoved);
     return missing ? QObject::tr("%1: %2.").arg(missing->why, missing->remedy) : QString();
 }
 
-std::shared_ptr<DeviceBench> openTable(const TableParts& parts, const Installation& room) {
-    if (const std::optional<Missing> missing = missingOn(room, *parts.devices))
+std::shared_ptr<Bench> openTable(const TableParts& parts, const Installation& room, bool isMoved) {
+    if (const std::optional<Missing> missing = missingOn(room, *parts.devices, isMoved))
         throw DeviceError("device on the table", missing->why.toStdString(), missing->remedy.toStdString());
     return std::make_shared<TableBench>(parts, room);
 }

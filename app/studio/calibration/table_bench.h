@@ -8,8 +8,8 @@
 
 #include "app/studio/devices/device_service.h"
 #include "calibration/capture/capture_camera.h"
-#include "calibration/capture/device_bench.h"
 #include "calibration/capture/pattern_display.h"
+#include "calibration/stages/bench.h"
 #include "core/base/clock.h"
 #include "core/scene/installation.h"
 
@@ -27,11 +27,12 @@ struct TableParts {
 };
 
 /// Why nothing can be measured with what is connected, in a sentence with what to do; empty: it can.
-[[nodiscard]] QString tableObstacle(const Installation& room, const DeviceService& devices);
+/// `isMoved`: servos are needed too.
+[[nodiscard]] QString tableObstacle(const Installation& room, const DeviceService& devices, bool isMoved = true);
 
 /// Made in the window's thread, used and let go of in any. Servos go slowly where they are told, by the service's own
 /// test of servos and so through the guard of their link; they go back to the show when the bench is gone. Throws
 /// DeviceError where a projector's window cannot show patterns, or for what `tableObstacle` says.
-[[nodiscard]] std::shared_ptr<DeviceBench> openTable(const TableParts& parts, const Installation& room);
+[[nodiscard]] std::shared_ptr<Bench> openTable(const TableParts& parts, const Installation& room, bool isMoved = true);
 
 } // namespace lumorph::studio

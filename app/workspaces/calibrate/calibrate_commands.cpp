@@ -1,6 +1,7 @@
 #include "app/workspaces/calibrate/calibrate_commands.h"
 
 #include <QApplication>
+#include <QDate>
 #include <QFileDialog>
 
 #include "app/workspaces/calibrate/error_map_view.h"
@@ -129,9 +130,28 @@ void askForOrder(const CalibrateParts& parts) {
 }
 
 void askForRecording(const CalibrateParts& parts, std::size_t link, std::size_t file) {
+    if (file == chainLinks()[link].files.size())
+        return askToRead("chain.recording.file", "The description in a recording's folder",
+                         "Recordings (recording.json)", [parts, link, file](const std::filesystem::path& path) {
+                             parts.chain.setFile(link, file, path.parent_path());
+                         });
     const LinkFile& wanted = chainLinks()[link].files[file];
     askToRead("chain.recording.file", wanted.title + ": " + wanted.words, "Recordings (*.csv *.txt);;All files (*)",
               [parts, link, file](const std::filesystem::path& path) { parts.chain.setFile(link, file, path); });
+}
+
+void askToKeepRecording(const CalibrateParts& parts, std::size_t link) {
+    auto* dialog = new QFileDialog(QApplication::activeWindow(), "A new folder for the recording");
+    dialog->setObjectName("chain.keep.folder");
+    dialog->setOption(QFileDialog::DontUseNativeDialog);
+    dialog->setAttribute(Qt::WA_DeleteOnClose);
+    dialog->setAcceptMode(QFileDialog::AcceptSave);
+    dialog->setFileMode(QFileDialog::AnyFile);
+    dialog->setLabelText(QFileDialog::Accept, "Keep");
+    dialog->selectFile(QString("%1-%2").arg(chainLinks()[link].key, QDate::currentDate().toString(Qt::ISODate)));
+    QObject::connect(dialog, &QFileDialog::fileSelected, dialog,
+                     [parts, link](const QString& folder) { parts.chain.keepRecording(link, folder.toStdString()); });
+    dialog->open();
 }
 
 void askForSaved(const CalibrateParts& parts) {

@@ -22,6 +22,8 @@ void askForImages(const CalibrateParts& parts);
 void askForOrder(const CalibrateParts& parts);
 /// Asks for a recording of a link of the chain.
 void askForRecording(const CalibrateParts& parts, std::size_t link, std::size_t file);
+/// Asks for a folder in which what devices said of a link is kept.
+void askToKeepRecording(const CalibrateParts& parts, std::size_t link);
 /// Asks where poses are saved.
 void askForSaved(const CalibrateParts& parts);
 

@@ -41,10 +41,10 @@ CalibrationService::DisplayOpener displayOpener(Studio& studio) {
 }
 
 ChainService::TableOpener tableOpener(Studio& studio) {
-    return [&studio](const Installation& room) {
+    return [&studio](const Installation& room, bool isMoved) {
         return openTable({&studio.devices, displayOpener(studio),
                           [](const std::string& address) { return openCaptureCamera(address); }},
-                         room);
+                         room, isMoved);
     };
 }
 

@@ -24,7 +24,7 @@ public:
           way_(
               new Segments({{"chain.way.lab", "Virtual lab", "Without any hardware; the truth is known"},
                             {"chain.way.live", "Connected tracker", "By touching, step by step, what the studio shows"},
-                            {"chain.way.files", "Recordings", "Poses of a real tracker that were recorded before"}},
+                            {"chain.way.files", "Recordings", "What was recorded before, here or elsewhere"}},
                            this)) {
         setMaximumWidth(kRecordingWidth);
         auto* column = new QVBoxLayout(this);
@@ -79,14 +79,13 @@ private:
     void refresh() {
         const ChainState& state = parts_.chain.state();
         const ChainLink& link = chainLinks()[state.chosen];
-        setVisible(link.fromFiles || link.fromLive || link.onTable);
-        if (link.onTable)
-            way_->setSegment(1, "Camera and servos", "The device on the table, as it is connected");
+        setVisible(link.stage != nullptr);
+        if (link.isOnTable)
+            way_->setSegment(1, link.isMoved ? "Camera and servos" : "Camera and projectors",
+                             "What is on the table, as it is connected");
         else
             way_->setSegment(1, "Connected tracker", "By touching, step by step, what the studio shows",
-                             link.fromLive != nullptr);
-        way_->setSegment(2, "Recordings", "Poses of a real tracker that were recorded before",
-                         link.fromFiles != nullptr);
+                             link.isWithTracker());
         way_->setChosen(static_cast<int>(wayOf(state, state.chosen)));
         for (QWidget* part : {static_cast<QWidget*>(way_), list_}) part->setEnabled(!state.running);
         refreshLive();
@@ -112,7 +111,10 @@ private:
             delete old;
         }
         if (shown)
-            for (std::size_t k = 0; k < chainLinks()[*shown].files.size(); ++k) addRow(*shown, k);
+            for (std::size_t k = 0; k <= chainLinks()[*shown].files.size(); ++k) {
+                const std::size_t count = chainLinks()[*shown].files.size();
+                addRow(*shown, k == 0 ? count : k - 1); // ours first
+            }
     }
 
     /// Whether the tracker sees what is needed, and the corner that is to be touched.
@@ -121,12 +123,14 @@ private:
         const ChainLink& link = chainLinks()[state.chosen];
         const bool isLive = wayOf(state, state.chosen) == LinkWay::live;
         const StudioState& document = parts_.studio.document.state();
-        const QString obstacle = !isLive        ? QString()
-                                 : link.onTable ? tableObstacle(*document.installation, parts_.studio.devices)
-                                                : parts_.live.obstacle(link.liveRoles);
+        const QString obstacle = !isLive ? QString()
+                                 : link.isOnTable
+                                     ? tableObstacle(*document.installation, parts_.studio.devices, link.isMoved)
+                                     : parts_.live.obstacle(link.liveRoles);
         seen_->setVisible(isLive && !state.live);
         const QString words = !obstacle.isEmpty() ? obstacle
-                              : link.onTable      ? QString("Camera, projectors and servos are connected.")
+                              : link.isMoved      ? QString("Camera, projectors and servos are connected.")
+                              : link.isOnTable    ? QString("The room's camera is named; it is opened to measure.")
                                                   : QString("The tracker sees all that is needed.");
         if (words != seen_->text()) { // it is asked ten times a second
             seen_->setText(words);
@@ -139,7 +143,12 @@ private:
     }
 
     void addRow(std::size_t link, std::size_t file) {
-        const LinkFile& wanted = chainLinks()[link].files[file];
+        const LinkFile ours{
+            "recording", "Recording",
+            chainLinks()[link].files.empty()
+                ? "The folder that was kept when this was measured, here or elsewhere."
+                : "The folder that was kept when this was measured; or, of a tracker's own recordings:"};
+        const LinkFile& wanted = file < chainLinks()[link].files.size() ? chainLinks()[link].files[file] : ours;
         const std::filesystem::path path = file < files_.size() ? files_[file] : std::filesystem::path();
         auto* plate = new QWidget(list_);
         auto* column = new QVBoxLayout(plate);

@@ -11,6 +11,7 @@
 #include "app/studio/calibration/chain_service.h"
 #include "app/studio/widgets/dock_parts.h"
 #include "app/studio/widgets/panel.h"
+#include "app/workspaces/calibrate/calibrate_commands.h"
 #include "app/workspaces/calibrate/chain_docks.h"
 #include "app/workspaces/calibrate/finding_card.h"
 #include "app/workspaces/calibrate/point_bars.h"
@@ -251,7 +252,27 @@ private:
         for (const FindingWords& words : outcome.findings)
             list_->addWidget(makeFindingCard(words, !outcome.isGood, page_));
         for (const LinkFigure& figure : outcome.figures) list_->addWidget(makeFigure(figure));
+        if (outcome.recording) addKeeping(state);
         list_->addStretch(1);
+    }
+
+    /// What was recorded can be solved again, where it is kept.
+    void addKeeping(const ChainState& state) {
+        const auto kept = state.kept.find(state.chosen);
+        if (kept != state.kept.end()) {
+            auto* where =
+                new QLabel(QString("Recording kept in %1").arg(QString::fromStdString(kept->second.string())), page_);
+            where->setObjectName("chain.kept");
+            where->setProperty("look", "muted");
+            where->setWordWrap(true);
+            list_->addWidget(where);
+            return;
+        }
+        auto* keep = new QPushButton("Keep the recording...", page_);
+        keep->setObjectName("chain.keep");
+        keep->setToolTip("Pictures, poses and times as the devices gave them, in a folder: they can be solved again");
+        connect(keep, &QPushButton::clicked, this, [this, link = state.chosen] { askToKeepRecording(parts_, link); });
+        list_->addWidget(keep, 0, Qt::AlignLeft);
     }
 
     QWidget* makeFigure(const LinkFigure& figure) {

@@ -1,0 +1,318 @@
+#include <cstdio>
+#include <fstream>
+#include <functional>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "calibration/lab/moved_room.h"
+#include "calibration/lab/true_room.h"
+#include "calibration/light/camera_light.h"
+#include "calibration/stages/lab_bench.h"
+#include "calibration/stages/stage.h"
+#include "core/base/error.h"
+#include "tests/core/temporary_folder.h"
+#include "tests/support/cut_tablet.h"
+
+// What a stage recorded is written, read and solved again to the same figures; what is damaged, cut short or of
+// something else is refused by its name.
+
+namespace lumorph {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+/// A room with a projector of few pixels, and its truth; all that a stage builds on is known.
+struct StageRoom {
+    StageSite site{std::make_shared<const Rig>(test::cutTablet()), withLabCamera(defaultInstallation())};
+    Installation truth;
+
+    explicit StageRoom(const std::string& stage, std::uint32_t seed) {
+        CalibratedCamera& lamp = site.room.projectors.front().camera;
+        lamp = withSize(lamp, {480, 270});
+        truth = stage == "verify" ? pushed(site.room, *site.rig, {"projector", 3e-3, 0.0}, seed)
+                                  : trueRoom(site.room, site.rig->actuators(), seed);
+        site.room.pointerTip = truth.pointerTip;
+        site.room.worldFromTracker = truth.worldFromTracker;
+    }
+};
+
+struct Kept {
+    MeasuredStage measured;
+    std::unique_ptr<TemporaryFolder> folder = std::make_unique<TemporaryFolder>();
+    [[nodiscard]] std::filesystem::path place() const { return *folder / "recording"; }
+};
+
+/// Each is recorded once for all tests.
+const Kept& keptOf(const std::string& stage) {
+    static std::map<std::string, Kept> all;
+    if (const auto found = all.find(stage); found != all.end()) return found->second;
+    constexpr std::uint32_t kSeed = 11;
+    const StageRoom room(stage, kSeed);
+    LabBenchOptions options;
+    options.checkPattern = "phase:16x3+1x3";
+    LabBench bench(*room.site.rig, room.truth, kSeed, options);
+    Kept& kept = all[stage];
+    kept.measured = measureStage(calibrationStage(stage), room.site, bench);
+    writeStageRecording(kept.measured.recording, kept.place());
+    return kept;
+}
+
+/// All numbers of a result that are no dates.
+std::vector<double> numbersOf(const StageResult& result) {
+    std::vector<double> numbers;
+    const auto add = [&numbers](std::initializer_list<double> more) { numbers.insert(numbers.end(), more); };
+    if (const auto* of = std::get_if<Registration>(&result)) {
+        add({of->rms, of->turnSigma, of->shiftSigma, of->fresh.rms, of->fresh.worst});
+        for (const PointError& point : of->points) add({point.metres});
+        for (const PointError& point : of->fresh.points) add({point.metres});
+    } else if (const auto* light = std::get_if<LightCalibration>(&result)) {
+        add({light->fresh.median, light->fresh.most, light->before.median, light->responseRms, light->ambient,
+             double(light->photographs)});
+    } else if (const auto* servos = std::get_if<ServoMeasurement>(&result)) {
+        add({servos->seconds, servos->measured.rms, servos->measured.freshDegrees, servos->measured.freshWorst});
+        for (const ServoFinding& servo : servos->measured.servos)
+            add({servo.backlashDegrees, servo.backlashSigma, servo.curveSigma});
+    } else if (const auto* delays = std::get_if<MeasuredDelays>(&result)) {
+        add({delays->light.seconds, delays->light.sigma, delays->tracker.seconds, delays->mark.seconds, delays->seconds,
+             delays->gain.value().with.always});
+        for (const MeasuredDelays::Servo& servo : delays->servos) add({servo.step.lag.seconds, servo.step.play});
+    } else {
+        const auto& check = std::get<VerifiedRoom>(result);
+        add({check.check.now.median, check.check.now.worst, check.check.corrected.median, check.fresh.median,
+             double(check.photographs), double(check.check.map.size())});
+    }
+    return numbers;
+}
+
+class StagesTest : public ::testing::TestWithParam<const char*> {};
+
+TEST_P(StagesTest, AreSolvedFromWhatWasWrittenToTheSameFigures) {
+    const std::string key = GetParam();
+    const Kept& kept = keptOf(key);
+    const StageRoom room(key, 11);
+    EXPECT_TRUE(isGood(kept.measured.result) || key == "verify");
+    const StageRecording read = readStageRecording(kept.place());
+    EXPECT_EQ(read.source, kept.measured.recording.source);
+    EXPECT_EQ(read.tables, kept.measured.recording.tables);
+    const StageResult again = solveStage(calibrationStage(key), read, room.site);
+    EXPECT_EQ(again.index(), kept.measured.result.index());
+    EXPECT_EQ(numbersOf(again), numbersOf(kept.measured.result)) << "bit for bit";
+    EXPECT_EQ(figuresOf(roomOf(again)), figuresOf(roomOf(kept.measured.result)));
+    EXPECT_NE(figuresOf(roomOf(again)), figuresOf(room.site.room)) << "something was measured";
+    // What the lab made stays so, whoever solves it.
+    Installation applied = room.site.room;
+    calibrationStage(key).apply(roomOf(again), applied);
+    EXPECT_TRUE(realParts(applied).empty()) << realParts(applied).front();
+}
+
+TEST_P(StagesTest, RefuseWhatIsDamagedCutShortOrOfSomethingElseByItsName) {
+    const std::string key = GetParam();
+    const Kept& kept = keptOf(key);
+    const StageRoom room(key, 11);
+    const auto refusalOf = [&](const std::function<void(const std::filesystem::path&)>& spoil) {
+        const TemporaryFolder folder;
+        std::filesystem::copy(kept.place(), folder / "spoilt", std::filesystem::copy_options::recursive);
+        spoil(folder / "spoilt");
+        try {
+            (void)solveStage(calibrationStage(key), readStageRecording(folder / "spoilt"), room.site);
+        } catch (const DataError& error) {
+            return std::string(error.what());
+        }
+        return std::string("nothing was refused");
+    };
+    const std::string table = kept.measured.recording.tables.begin()->first + ".csv";
+    EXPECT_THAT(refusalOf([&](const auto& at) {
+                    std::fstream file(at / table, std::ios::in | std::ios::out);
+                    file.seekp(-2, std::ios::end);
+                    file.put('7').put('7');
+                }),
+                ::testing::AllOf(HasSubstr(table), HasSubstr("damaged")));
+    EXPECT_THAT(refusalOf([&](const auto& at) {
+                    std::filesystem::resize_file(at / table, std::filesystem::file_size(at / table) / 2);
+                }),
+                ::testing::AllOf(HasSubstr(table), HasSubstr("cut short")));
+    EXPECT_THAT(refusalOf([&](const auto& at) { std::filesystem::remove(at / table); }), HasSubstr(table));
+    EXPECT_THAT(refusalOf([](const auto& at) { std::ofstream(at / kRecordingFile) << "{}"; }),
+                HasSubstr("no recording of a calibration"));
+    // Of another stage, of another device.
+    StageRecording foreign = kept.measured.recording;
+    foreign.device = "flower";
+    EXPECT_THROW((void)solveStage(calibrationStage(key), foreign, room.site), DataError);
+    foreign = kept.measured.recording;
+    foreign.stage = key == "light" ? "delays" : "light";
+    EXPECT_THROW((void)solveStage(calibrationStage(key), foreign, room.site), DataError);
+    // Sound files in which a part is missing.
+    foreign = kept.measured.recording;
+    foreign.tables.clear();
+    EXPECT_THROW((void)solveStage(calibrationStage(key), foreign, room.site), DataError);
+}
+
+INSTANTIATE_TEST_SUITE_P(All, StagesTest,
+                         ::testing::Values("light", "pointer", "tracker", "body", "eye", "servos", "delays", "verify"),
+                         [](const auto& of) { return std::string(of.param); });
+
+/// Devices that are not the lab's, as far as anybody can tell.
+class TouchTable final : public Bench {
+public:
+    explicit TouchTable(LabBench& lab) : lab_(lab) {}
+    [[nodiscard]] RecordingSource source() const override {
+        return {RecordingSource::Kind::table, "a tracked pointer", "2026-11-20T10:00:00Z", 0};
+    }
+    [[nodiscard]] PointerCapture recordPointer(const StageSite& site, const Progress& progress) override {
+        return lab_.recordPointer(site, progress);
+    }
+
+private:
+    LabBench& lab_;
+};
+
+TEST(StageSources, AreMeasuredAtTheTableAndRecordedOnceTheyAreSolvedAgain) {
+    const StageRoom room("pointer", 4);
+    LabBench lab(*room.site.rig, room.truth, 4);
+    TouchTable table(lab);
+    const CalibrationStage& stage = calibrationStage("pointer");
+    const MeasuredStage measured = measureStage(stage, room.site, table);
+    EXPECT_EQ(roomOf(measured.result).origins.pointer.way, Origin::Way::measured);
+    const Origin again = roomOf(solveStage(stage, measured.recording, room.site)).origins.pointer;
+    EXPECT_EQ(again.way, Origin::Way::recorded);
+    EXPECT_EQ(again.date, "2026-11-20T10:00:00Z") << "when it was recorded, not when it was solved";
+    EXPECT_THAT(again.method, HasSubstr("recorded by a tracked pointer: "));
+    EXPECT_FALSE(measured.recording.truth);
+}
+
+TEST(StageSources, ABenchThatLacksSomethingSaysWhatAndNothingTakesItsPlace) {
+    const StageRoom room("pointer", 4);
+    LabBench lab(*room.site.rig, room.truth, 4);
+    TouchTable table(lab);
+    for (const CalibrationStage& stage : calibrationStages()) {
+        if (stage.key == std::string_view("pointer")) continue;
+        try {
+            (void)measureStage(stage, room.site, table);
+            ADD_FAILURE() << stage.key;
+        } catch (const DeviceError& error) {
+            const bool touches = std::ranges::find(stage.needs, "pointer") != stage.needs.end();
+            EXPECT_EQ(error.subject(), touches ? "tracker" : "camera") << stage.key;
+        }
+    }
+}
+
+TEST(StageRecordings, TablesKeepEachNumberAndName) {
+    RecordedTable table{{"a", "b"}, {}, {}};
+    table.add("one, \"two\"", {0.1, -1e-300});
+    table.add("", {1.0 / 3.0, 12345678901234567.0});
+    EXPECT_EQ(parseTable(tableText(table), "table"), table);
+    for (const char* text : {"", "name\n", "a,b\n1\n", "a,b\n1,2,3\n", "a,b\n1,x\n", "a,,b\n", "name,a\nx\n"})
+        EXPECT_THROW((void)parseTable(text, "table"), DataError) << text;
+}
+
+/// A camera and a projector's window before the lab's light, and somebody who covers the lens when asked.
+struct LightTable {
+    LightLab& lab;
+    std::shared_ptr<ManualClock> clock = std::make_shared<ManualClock>();
+    glm::ivec3 shown{0};
+    bool isCovered = false, isGrey = false;
+    double seconds = 1.0 / 60.0;
+};
+
+class LightCamera final : public CaptureCamera {
+public:
+    explicit LightCamera(LightTable& table) : table_(table) {}
+    [[nodiscard]] cv::Mat grab(const Progress& progress) override {
+        progress.throwIfCancelled();
+        table_.clock->advance(Microseconds{33'000});
+        cv::Mat picture =
+            table_.lab.photograph({table_.isCovered ? std::nullopt : std::optional(table_.shown)}, table_.seconds);
+        cv::Mat bgr;
+        cv::cvtColor(picture, bgr, cv::COLOR_RGB2BGR);
+        if (table_.isGrey) cv::cvtColor(picture, bgr, cv::COLOR_RGB2GRAY);
+        return bgr;
+    }
+    [[nodiscard]] std::string name() const override { return "/dev/video9"; }
+    [[nodiscard]] cv::Size size() const override { return {}; }
+    [[nodiscard]] std::optional<Exposures> exposures() const override { return Exposures{1.0 / 8000.0, 0.5}; }
+    void setExposure(double seconds) override { table_.seconds = seconds; }
+
+private:
+    LightTable& table_;
+};
+
+class LightScreen final : public PatternDisplay {
+public:
+    explicit LightScreen(LightTable& table) : table_(table) {}
+    [[nodiscard]] cv::Size size() const override { return {480, 270}; }
+    void show(const cv::Mat& picture, const Progress&) override {
+        const cv::Scalar mean = cv::mean(picture);
+        table_.shown = picture.channels() == 1 ? glm::ivec3(int(mean[0])) : glm::ivec3(mean[2], mean[1], mean[0]);
+    }
+    void clear() override { table_.shown = glm::ivec3(0); }
+
+private:
+    LightTable& table_;
+};
+
+class ConnectedLight final : public Bench {
+public:
+    explicit ConnectedLight(LightTable& table) : table_(table), camera_(table), screen_(table) {}
+    [[nodiscard]] RecordingSource source() const override { return {RecordingSource::Kind::table, "camera 9", "", 0}; }
+    [[nodiscard]] LightBench& light(const StageSite&, const std::optional<WhiteSheet>&, const Progress&) override {
+        const Progress hands([this](double, std::string_view stage) {
+            if (stage.starts_with("cover the lens of Projector")) table_.isCovered = true;
+            if (stage.starts_with("uncover the lens of Projector")) table_.isCovered = false;
+        });
+        return light_.emplace(camera_, std::vector<PatternDisplay*>{&screen_}, std::vector<std::string>{"Projector"},
+                              hands, table_.clock);
+    }
+
+private:
+    LightTable& table_;
+    LightCamera camera_;
+    LightScreen screen_;
+    std::optional<CameraLight> light_;
+};
+
+TEST(StageAtTheTable, LightIsMeasuredByAConnectedCameraWhileSomebodyCoversTheLens) {
+    const StageRoom room("light", 23);
+    LightLabOptions options;
+    options.laysSheet = false;
+    LightLab lab(room.truth, *room.site.rig, lightLabCamera(room.truth, options), std::nullopt, options, 23);
+    LightTable table{lab};
+    ConnectedLight bench(table);
+    const MeasuredStage measured = measureStage(calibrationStage("light"), room.site, bench);
+    const auto& light = std::get<LightCalibration>(measured.result);
+    ASSERT_TRUE(light.good()) << sentenceOf(*light.refusal);
+    const InstalledProjector &found = light.room.projectors.front(), &truth = room.truth.projectors.front();
+    std::printf("light at the table: fresh greys %.2f %%, black %.4f of %.4f\n", 100.0 * light.fresh.median,
+                double(found.black.g), double(truth.black.g));
+    EXPECT_LT(light.fresh.median, 0.01);
+    EXPECT_NEAR(found.black.g, truth.black.g, 0.001F);
+    EXPECT_EQ(found.response.way, Origin::Way::measured);
+    EXPECT_EQ(numbersOf(solveStage(calibrationStage("light"), measured.recording, room.site)),
+              numbersOf(measured.result));
+}
+
+TEST(StageAtTheTable, LightIsMeasuredByACameraWithoutColour) {
+    const StageRoom room("light", 31);
+    LightLabOptions options;
+    options.laysSheet = false;
+    LightLab lab(room.truth, *room.site.rig, lightLabCamera(room.truth, options), std::nullopt, options, 31);
+    LightTable table{lab};
+    table.isGrey = true;
+    ConnectedLight bench(table);
+    const MeasuredStage measured = measureStage(calibrationStage("light"), room.site, bench);
+    const auto& light = std::get<LightCalibration>(measured.result);
+    ASSERT_TRUE(light.good()) << sentenceOf(*light.refusal);
+    const InstalledProjector &found = light.room.projectors.front(), &truth = room.truth.projectors.front();
+    std::printf("light by a grey camera: fresh greys %.2f %%, black %.4f of %.4f\n", 100.0 * light.fresh.median,
+                double(found.black.g), double(truth.black.g));
+    EXPECT_LT(light.fresh.median, 0.01);
+    EXPECT_NEAR(found.black.g, truth.black.g, 0.001F);
+    EXPECT_NEAR(found.gain.r, 1.0F, 1e-5F) << "one projector has no tint beside others";
+    EXPECT_THAT(light.assumption, HasSubstr("sees no colour"));
+    EXPECT_EQ(numbersOf(solveStage(calibrationStage("light"), measured.recording, room.site)),
+              numbersOf(measured.result));
+}
+
+} // namespace
+} // namespace lumorph
