@@ -15,7 +15,8 @@ namespace {
 
 constexpr int kWidth = 320;             // pixels of its pictures
 constexpr int kFramesAfterExposure = 4; // until a driver has taken a new exposure over
-constexpr double kSeenBytes = 1.5;      // by which a projector's white must change the mean of the brightest tenth
+constexpr double kCoveredShare = 0.02;  // of a projector's light that is left behind a covered lens
+constexpr double kOpenShare = 0.8;      // of it that is seen again
 constexpr Microseconds kLongestCover{60'000'000};
 constexpr int kMostLooks = 2000; // of one wait, where a clock stands still
 
@@ -51,6 +52,7 @@ CameraLight::CameraLight(CaptureCamera& camera, std::vector<PatternDisplay*> dis
     const auto lit = std::ranges::find_if(displays_, [](const PatternDisplay* display) { return display != nullptr; });
     if (lit == displays_.end()) throw InvalidInput("measurement of light", "no projector is on", "switch one on");
     PoseCaptureSettings settings;
+    settings.order = parsePattern("graycode", (*lit)->size());
     settings.clock = clock_;
     settle_ = PoseCapture(camera_, **lit, settings).measureSettle(progress_).delay;
 }
@@ -74,24 +76,27 @@ cv::Mat CameraLight::look() {
     return smallPicture(camera_.grab(progress_));
 }
 
-/// Whether this projector's white changes what the camera sees.
-bool CameraLight::isSeen(std::size_t projector) {
+/// What this projector's white adds to each pixel.
+cv::Mat CameraLight::lightOf(std::size_t projector) {
     LightShow all(displays_.size(), glm::ivec3(0));
     show(all);
-    const cv::Mat dark = look();
+    cv::Mat dark = look(), lit, added;
     all[projector] = glm::ivec3(255);
     show(all);
-    cv::Mat lit = look();
-    cv::subtract(lit, dark, lit);
-    cv::Mat row = lit.clone().reshape(1, 1), sorted;
-    cv::sort(row, sorted, cv::SORT_EVERY_ROW + cv::SORT_DESCENDING);
-    return cv::mean(sorted.colRange(0, std::max(1, sorted.cols / 10)))[0] > kSeenBytes;
+    lit = look();
+    cv::subtract(lit, dark, added, cv::noArray(), CV_MAKETYPE(CV_32F, lit.channels()));
+    return added;
 }
 
+/// A share of the light, so that noise of dark pixels counts for nothing.
 void CameraLight::waitFor(std::size_t projector, bool covered) {
+    cv::Mat& whole = whole_[projector];
+    if (covered && whole.empty()) whole = lightOf(projector);
     const Microseconds begun = clock_->now();
-    for (int looks = 0; isSeen(projector) == covered; ++looks) {
+    for (int looks = 0;; ++looks) {
         progress_.report(-1.0, (covered ? "cover the lens of " : "uncover the lens of ") + names_.at(projector));
+        const double share = lightOf(projector).dot(whole) / std::max(whole.dot(whole), 1e-9);
+        if (covered ? share < kCoveredShare : share > kOpenShare) break;
         if (clock_->now() - begun > kLongestCover || looks > kMostLooks)
             throw DeviceError(names_.at(projector), covered ? "its lens was not covered" : "its lens stayed covered",
                               "measure again, and do as it says within a minute");

@@ -29,7 +29,7 @@ public:
 private:
     void show(const LightShow& show);
     [[nodiscard]] cv::Mat look();
-    [[nodiscard]] bool isSeen(std::size_t projector);
+    [[nodiscard]] cv::Mat lightOf(std::size_t projector);
     void waitFor(std::size_t projector, bool covered);
 
     CaptureCamera& camera_;
@@ -41,6 +41,7 @@ private:
     Microseconds settle_{0};
     double exposure_ = 0.0;
     std::vector<bool> covered_;
+    std::map<std::size_t, cv::Mat> whole_; ///< what each projector's white adds, uncovered
 };
 
 } // namespace lumorph

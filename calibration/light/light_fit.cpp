@@ -58,6 +58,8 @@ double darkLight(const ProjectorShots& shots, std::span<const LightPatch> patche
     return sum;
 }
 
+constexpr double kLeastColour = 1e-6; // determinant of what the channels see, of its largest
+
 /// A black falls into all channels of the camera, so they are solved for together.
 glm::dvec3 blacksOf(const ProjectorShots& shots, std::span<const LightPatch> patches,
                     const CameraResponses& responses) {
@@ -73,7 +75,12 @@ glm::dvec3 blacksOf(const ProjectorShots& shots, std::span<const LightPatch> pat
                 whites[channel][camera] += whiteOf(shots, responses, i, camera, channel).value_or(0.0);
         }
     }
-    const glm::dvec3 byWhite = glm::max(glm::inverse(whites) * blacks, glm::dvec3(0.0));
+    // A camera without colour tells no channel's black from another's: all get the same share.
+    const double size = glm::length(whites[0]) * glm::length(whites[1]) * glm::length(whites[2]);
+    const bool isGrey = !(std::abs(glm::determinant(whites)) > kLeastColour * size);
+    const double all = whites[0][0] + whites[1][0] + whites[2][0];
+    const glm::dvec3 byWhite = isGrey ? glm::dvec3(std::max(0.0, blacks[0] / std::max(all, 1e-12)))
+                                      : glm::max(glm::inverse(whites) * blacks, glm::dvec3(0.0));
     return byWhite / (1.0 + byWhite);
 }
 

@@ -95,7 +95,8 @@ TEST_P(StagesTest, AreSolvedFromWhatWasWrittenToTheSameFigures) {
     EXPECT_TRUE(isGood(kept.measured.result) || key == "verify");
     const StageRecording read = readStageRecording(kept.place());
     EXPECT_EQ(read.source, kept.measured.recording.source);
-    EXPECT_EQ(read.tables, kept.measured.recording.tables);
+    for (const auto& [name, table] : kept.measured.recording.tables) // as text: what is no number equals nothing
+        EXPECT_EQ(tableText(read.tables.at(name)), tableText(table)) << name;
     const StageResult again = solveStage(calibrationStage(key), read, room.site);
     EXPECT_EQ(again.index(), kept.measured.result.index());
     EXPECT_EQ(numbersOf(again), numbersOf(kept.measured.result)) << "bit for bit";
@@ -226,7 +227,7 @@ public:
             table_.lab.photograph({table_.isCovered ? std::nullopt : std::optional(table_.shown)}, table_.seconds);
         cv::Mat bgr;
         cv::cvtColor(picture, bgr, cv::COLOR_RGB2BGR);
-        if (table_.isGrey) cv::cvtColor(picture, bgr, cv::COLOR_RGB2GRAY);
+        if (table_.isGrey) cv::extractChannel(picture, bgr, 0);
         return bgr;
     }
     [[nodiscard]] std::string name() const override { return "/dev/video9"; }
@@ -296,6 +297,7 @@ TEST(StageAtTheTable, LightIsMeasuredByACameraWithoutColour) {
     const StageRoom room("light", 31);
     LightLabOptions options;
     options.laysSheet = false;
+    options.mixing = 1.0 / 3.0; // each channel sees all light alike: one of them is a grey camera
     LightLab lab(room.truth, *room.site.rig, lightLabCamera(room.truth, options), std::nullopt, options, 31);
     LightTable table{lab};
     table.isGrey = true;
@@ -304,10 +306,14 @@ TEST(StageAtTheTable, LightIsMeasuredByACameraWithoutColour) {
     const auto& light = std::get<LightCalibration>(measured.result);
     ASSERT_TRUE(light.good()) << sentenceOf(*light.refusal);
     const InstalledProjector &found = light.room.projectors.front(), &truth = room.truth.projectors.front();
+    // What it sees of all channels together is what it can tell.
+    const glm::vec3 whites = truth.gain * (1.0F - truth.black);
+    const float black = glm::dot(truth.gain, truth.black) / (whites.r + whites.g + whites.b);
+    const float share = black / (1.0F + black);
     std::printf("light by a grey camera: fresh greys %.2f %%, black %.4f of %.4f\n", 100.0 * light.fresh.median,
-                double(found.black.g), double(truth.black.g));
+                double(found.black.g), double(share));
     EXPECT_LT(light.fresh.median, 0.01);
-    EXPECT_NEAR(found.black.g, truth.black.g, 0.001F);
+    EXPECT_NEAR(found.black.g, share, 0.0005F);
     EXPECT_NEAR(found.gain.r, 1.0F, 1e-5F) << "one projector has no tint beside others";
     EXPECT_THAT(light.assumption, HasSubstr("sees no colour"));
     EXPECT_EQ(numbersOf(solveStage(calibrationStage("light"), measured.recording, room.site)),
