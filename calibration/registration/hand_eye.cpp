@@ -38,7 +38,7 @@ void judge(HandEye& result, const Fit& fit, const Unknowns& solved, Place place,
     const Pose first = half({0, poses / 2}), second = half({poses / 2, poses});
     result.halvesTurn = turnBetween(first, second);
     result.halvesShift = glm::length(first.position - second.position);
-    double turn = 0.0, shift = 0.0, offset = 0.0;
+    double turn = 0.0, shift = 0.0, offset = 0.0, drift = 0.0;
     for (std::size_t block = 0; block < kBlocks; ++block) {
         progress.throwIfCancelled();
         progress.report(0.4 + 0.6 * double(block) / double(kBlocks), "how sure it is");
@@ -48,11 +48,13 @@ void judge(HandEye& result, const Fit& fit, const Unknowns& solved, Place place,
         turn += share * std::pow(turnBetween(without.bFromA, solved.bFromA), 2);
         shift += share * glm::dot(without.bFromA.position - solved.bFromA.position,
                                   without.bFromA.position - solved.bFromA.position);
-        offset += share * std::pow(without.timeOffset - solved.timeOffset, 2);
+        offset += share * std::pow(without.clocks.seconds - solved.clocks.seconds, 2);
+        drift += share * std::pow(without.clocks.drift - solved.clocks.drift, 2);
     }
     result.turnSigma = std::sqrt(turn);
     result.shiftSigma = std::sqrt(shift);
     result.offsetSigma = std::sqrt(offset);
+    result.driftSigma = std::sqrt(drift);
 }
 
 [[noreturn]] void refuseJump(double by, double from) {
@@ -67,8 +69,8 @@ void checkClocks(const Fit& fit, const PoseTrack& b, const Unknowns& solved, Pla
     std::vector<double> offsets;
     const std::size_t poses = b.poses.size();
     for (std::size_t block = 0; block < kBlocks; ++block)
-        offsets.push_back(
-            fit.refined(solved, place, {block * poses / kBlocks, (block + 1) * poses / kBlocks}, {}, true).timeOffset);
+        offsets.push_back(fit.refined(solved, place, {block * poses / kBlocks, (block + 1) * poses / kBlocks}, {}, true)
+                              .clocks.seconds);
     const double usual = median(offsets);
     std::vector<double> from;
     for (const double offset : offsets) from.push_back(std::abs(offset - usual));
@@ -132,20 +134,21 @@ void tellStrays(HandEye& result, const std::vector<Deviation>& deviations, const
 }
 
 HandEye solveSparse(const PoseTrack& a, const PoseTrack& b, const Progress& progress) {
-    progress.report(0.0, "clocks");
-    const ClockOffset clocks = clockOffset(a, b);
-    progress.throwIfCancelled();
+    const ClockOffset clocks = clockOffset(a, b, progress.part(0.0, 0.2));
     if (clocks.correlation < kLeastCorrelation)
         registration::refuse(
             Cause::clocksUnknown, kBodies,
             "their speeds of turning agree at no offset of the clocks (at best " + number(clocks.correlation, 2) + ")",
             "record both at the same time, joined rigidly, and turn them now fast, now slowly, for 20 s or more");
     progress.report(0.2, "joint");
-    Unknowns solved = hand_eye::closedForm(a, b, clocks.seconds);
-    const Fit fit(a, b);
+    Unknowns solved = hand_eye::closedForm(a, b, clocks);
+    const Fit fit(a, b, progress);
     const Range all{0, b.poses.size()};
     const auto as = [&](Place place) { return fit.refined(solved, place, all); };
-    const Unknowns byBody = as(Place::body), byOrigin = as(Place::origin);
+    const Unknowns byBody = as(Place::body);
+    progress.report(0.27, "joint");
+    const Unknowns byOrigin = as(Place::origin);
+    progress.report(0.33, "joint");
     const auto likely = [&](const Unknowns& u, Place place) {
         return hand_eye::Noise(fit.deviations(u), b, place).logarithm();
     };
@@ -155,7 +158,9 @@ HandEye solveSparse(const PoseTrack& a, const PoseTrack& b, const Progress& prog
     HandEye result;
     result.bFromA = solved.bFromA;
     result.worldBFromWorldA = solved.worldBFromWorldA;
-    result.timeOffset = solved.timeOffset;
+    result.timeOffset = solved.clocks.seconds;
+    result.clockDrift = solved.clocks.drift;
+    result.middle = solved.clocks.middle;
     const std::vector<Deviation> deviations = fit.deviations(solved);
     std::vector<double> turns, shifts;
     for (const Deviation& d : deviations) {
@@ -199,7 +204,9 @@ HandEye solveHandEye(const PoseTrack& a, const PoseTrack& b, const Progress& pro
         result = solveSparse(b, a, progress);
         result.bFromA = inverseOf(result.bFromA);
         result.worldBFromWorldA = inverseOf(result.worldBFromWorldA);
+        result.middle -= result.timeOffset;
         result.timeOffset = -result.timeOffset;
+        result.clockDrift = -result.clockDrift;
     }
     for (const PoseTrack* track : {&a, &b})
         result.warnings.insert(result.warnings.end(), track->warnings.begin(), track->warnings.end());

@@ -8,12 +8,18 @@
 
 namespace lumorph {
 
-/// Two bodies joined rigidly, each tracked in its own world by its own clock: how they hang together. At A's time t,
-///     worldBFromB(t + timeOffset) * bFromA = worldBFromWorldA * worldAFromA(t).
+/// Two bodies joined rigidly, each tracked in its own world by its own clock: how they hang together. At B's time t,
+///     worldBFromB(t) * bFromA = worldBFromWorldA * worldAFromA(toA(t)).
 struct HandEye {
     Pose bFromA;             ///< takes coordinates of body A to body B
     Pose worldBFromWorldA;   ///< likewise of their worlds
-    double timeOffset = 0.0; ///< seconds: B's clock minus A's
+    double timeOffset = 0.0; ///< seconds: B's clock minus A's, when B's says `middle`
+    double clockDrift = 0.0; ///< seconds that B's clock gains on A's in one of its own
+    double middle = 0.0;     ///< of the recordings, by B's clock
+    /// A's clock, when B's says this.
+    [[nodiscard]] double toA(double bSeconds) const noexcept {
+        return bSeconds - timeOffset - clockDrift * (bSeconds - middle);
+    }
 
     double medianTurn = 0.0;  ///< radians that single poses of B differ from what A says
     double medianShift = 0.0; ///< metres, likewise; of B's place in its world
@@ -23,12 +29,13 @@ struct HandEye {
     double halvesTurn = 0.0, halvesShift = 0.0; ///< radians, metres
 
     double turnSigma = 0.0, shiftSigma = 0.0, offsetSigma = 0.0; ///< of bFromA, radians and metres; seconds
+    double driftSigma = 0.0;
     std::vector<Finding> warnings;
 };
 
-/// Finds it without a guess: clocks by angular speed, rotation and place in closed form from relative motions (as
-/// Park and Martin 1994), then all together, robust, by the noise that the recordings themselves show. Sigmas come
-/// from leaving out one eighth of the recording after another, so that noise which lasts counts.
+/// Finds it without a guess: clocks, which may drift, by angular speed, rotation and place in closed form from relative
+/// motions (as Park and Martin 1994), then all together, robust, by the noise that the recordings themselves show.
+/// Sigmas come from leaving out one eighth of the recording after another, so that noise which lasts counts.
 ///
 /// Throws CaptureRefused: `clocks_unknown` (nothing correlates), `motion_degenerate` with the motion that is missing,
 /// `mirrored` (one of the worlds is left-handed), `wrong_units`, `model_does_not_fit` (they are not joined, or a

@@ -26,10 +26,10 @@ struct Both {
     Pose a, b;
 };
 
-std::vector<Both> together(const PoseTrack& a, const PoseTrack& b, double timeOffset) {
+std::vector<Both> together(const PoseTrack& a, const PoseTrack& b, const ClockOffset& clocks) {
     std::vector<Both> both;
     for (const TimedPose& pose : b.poses)
-        if (const auto at = poseAt(a, pose.seconds - timeOffset)) both.push_back({*at, pose.pose});
+        if (const auto at = poseAt(a, clocks.toA(pose.seconds))) both.push_back({*at, pose.pose});
     return both;
 }
 
@@ -179,8 +179,8 @@ Pose worldsOf(const std::vector<Both>& both, const Pose& bFromA) {
 
 } // namespace
 
-Unknowns closedForm(const PoseTrack& a, const PoseTrack& b, double offset) {
-    const std::vector<Both> both = together(a, b, offset);
+Unknowns closedForm(const PoseTrack& a, const PoseTrack& b, const ClockOffset& clocks) {
+    const std::vector<Both> both = together(a, b, clocks);
     if (both.size() < 20)
         registration::refuse(Cause::tooFewPoints, kBodies, "they share fewer than 20 moments",
                              "record both at the same time, for 20 s or more");
@@ -199,7 +199,7 @@ Unknowns closedForm(const PoseTrack& a, const PoseTrack& b, double offset) {
                                  " times as large as the first's",
                              "write both in metres");
     const Pose bFromA{place.place, rotation};
-    return {bFromA, worldsOf(both, bFromA), offset};
+    return {bFromA, worldsOf(both, bFromA), clocks};
 }
 
 } // namespace lumorph::hand_eye

@@ -7,9 +7,9 @@ namespace lumorph::hand_eye {
 
 inline constexpr const char* kBodies = "recordings of two bodies"; ///< what a refusal is about
 
-/// Rotation and place from relative motions (Park and Martin 1994), the clocks being known to differ by `offset`
-/// seconds. Throws CaptureRefused as solveHandEye does: too few moments, `motion_degenerate` with the motion that is
-/// missing, `mirrored`, `wrong_units`, `model_does_not_fit` where they do not turn alike.
-[[nodiscard]] Unknowns closedForm(const PoseTrack& a, const PoseTrack& b, double offset);
+/// Rotation and place from relative motions (Park and Martin 1994), the clocks being known. Throws CaptureRefused as
+/// solveHandEye does: too few moments, `motion_degenerate` with the motion that is missing, `mirrored`, `wrong_units`,
+/// `model_does_not_fit` where they do not turn alike.
+[[nodiscard]] Unknowns closedForm(const PoseTrack& a, const PoseTrack& b, const ClockOffset& clocks);
 
 } // namespace lumorph::hand_eye

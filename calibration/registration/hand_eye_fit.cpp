@@ -12,7 +12,9 @@ namespace lumorph::hand_eye {
 
 namespace {
 
-constexpr int kUnknowns = 13;
+constexpr int kUnknowns = 14;
+constexpr int kOffset = 12, kDrift = 13; // of the unknowns; the drift as what it makes of the offset until the end
+constexpr double kUsualDrift = 1e-4;     // of a clock
 constexpr int kRounds = 12;
 constexpr double kMedianOfNorm = 1.538;                 ///< of a normal vector in space with sigma 1
 constexpr double kLeastTurn = 1e-6, kLeastPlace = 1e-7; ///< noise below which numbers end
@@ -23,8 +25,11 @@ using Slopes = Eigen::Matrix<double, 6, kUnknowns>;
 
 Pose stepOf(const double* d) { return {{d[3], d[4], d[5]}, rotationOfTurn({d[0], d[1], d[2]})}; }
 
-Unknowns moved(const Unknowns& u, const Vector& d) {
-    return {u.bFromA * stepOf(d.data()), stepOf(d.data() + 6) * u.worldBFromWorldA, u.timeOffset + d[12]};
+Unknowns moved(const Unknowns& u, const Vector& d, double halfSpan) {
+    Unknowns next{u.bFromA * stepOf(d.data()), stepOf(d.data() + 6) * u.worldBFromWorldA, u.clocks};
+    next.clocks.seconds += d[kOffset];
+    next.clocks.drift += d[kDrift] / halfSpan;
+    return next;
 }
 
 const glm::dvec3& placeOf(const Deviation& d, Place place) { return place == Place::body ? d.place : d.origin; }
@@ -65,10 +70,13 @@ double Noise::at(const std::array<double, kRings>& of, double distance) const {
 }
 
 std::optional<Deviation> Fit::deviation(const Unknowns& unknowns, std::size_t pose) const {
+    const auto a = poseAt(a_, unknowns.clocks.toA(b_.poses[pose].seconds));
+    return a ? std::optional(deviationFrom(*a, unknowns, pose)) : std::nullopt;
+}
+
+Deviation Fit::deviationFrom(const Pose& a, const Unknowns& unknowns, std::size_t pose) const {
     const TimedPose& seen = b_.poses[pose];
-    const auto a = poseAt(a_, seen.seconds - unknowns.timeOffset);
-    if (!a) return std::nullopt;
-    const Pose told = unknowns.worldBFromWorldA * *a * inverseOf(unknowns.bFromA);
+    const Pose told = unknowns.worldBFromWorldA * a * inverseOf(unknowns.bFromA);
     Deviation d;
     d.pose = pose;
     d.turn = turnOf(glm::conjugate(seen.pose.rotation) * told.rotation);
@@ -87,45 +95,58 @@ std::vector<Deviation> Fit::deviations(const Unknowns& unknowns) const {
 Unknowns Fit::refined(Unknowns u, Place place, Range use, Range leave, bool offsetAlone) const {
     constexpr double kStep = 1e-6; // of a central difference: radians, metres, seconds
     for (int round = 0; round < kRounds; ++round) {
+        progress_.throwIfCancelled();
         std::vector<Deviation> all = deviations(u);
         std::erase_if(all, [&](const Deviation& d) { return !use.has(d.pose) || leave.has(d.pose); });
         if (all.size() < 10) break;
         const Noise noise(all, b_, place);
         std::array<Unknowns, kUnknowns> more, less;
         for (int k = 0; k < kUnknowns; ++k) {
-            more[static_cast<std::size_t>(k)] = moved(u, kStep * Vector::Unit(k));
-            less[static_cast<std::size_t>(k)] = moved(u, -kStep * Vector::Unit(k));
+            more[static_cast<std::size_t>(k)] = moved(u, kStep * Vector::Unit(k), halfSpan_);
+            less[static_cast<std::size_t>(k)] = moved(u, -kStep * Vector::Unit(k), halfSpan_);
         }
         Matrix normal = Matrix::Zero();
         Vector right = Vector::Zero();
         for (const Deviation& d : all) {
             Slopes slopes = Slopes::Zero();
             bool whole = true;
-            for (int k = offsetAlone ? 12 : 0; k < kUnknowns && whole; ++k) {
-                const auto up = deviation(more[static_cast<std::size_t>(k)], d.pose);
-                const auto down = deviation(less[static_cast<std::size_t>(k)], d.pose);
+            const int first = offsetAlone ? kOffset : 0, last = offsetAlone ? kOffset : kDrift;
+            const auto a = poseAt(a_, u.clocks.toA(b_.poses[d.pose].seconds));
+            // Only the clocks change which pose of A it is.
+            const auto at = [&](const Unknowns& by, int k) {
+                return k < kOffset && a ? std::optional(deviationFrom(*a, by, d.pose)) : deviation(by, d.pose);
+            };
+            for (int k = first; k <= last && whole; ++k) {
+                const auto up = at(more[static_cast<std::size_t>(k)], k);
+                const auto down = at(less[static_cast<std::size_t>(k)], k);
                 whole = up && down;
                 if (!whole) break;
                 const glm::dvec3 turn = (up->turn - down->turn) / (2.0 * kStep);
-                const glm::dvec3 at = (placeOf(*up, place) - placeOf(*down, place)) / (2.0 * kStep);
-                slopes.col(k) << turn.x, turn.y, turn.z, at.x, at.y, at.z;
+                const glm::dvec3 moves = (placeOf(*up, place) - placeOf(*down, place)) / (2.0 * kStep);
+                slopes.col(k) << turn.x, turn.y, turn.z, moves.x, moves.y, moves.z;
             }
             if (!whole) continue; // at the rim of a gap
             const double distance = distanceOf(b_.poses[d.pose]);
-            const glm::dvec3& at = placeOf(d, place);
+            const glm::dvec3& off = placeOf(d, place);
             const double turnWeight = weightOf(d.turn, noise.turn(distance));
-            const double placeWeight = weightOf(at, noise.place(distance));
+            const double placeWeight = weightOf(off, noise.place(distance));
             Eigen::Matrix<double, 6, 1> weights, error;
             weights << turnWeight, turnWeight, turnWeight, placeWeight, placeWeight, placeWeight;
-            error << d.turn.x, d.turn.y, d.turn.z, at.x, at.y, at.z;
+            error << d.turn.x, d.turn.y, d.turn.z, off.x, off.y, off.z;
             normal += slopes.transpose() * weights.asDiagonal() * slopes;
             right -= slopes.transpose() * weights.asDiagonal() * error;
+        }
+        // A short recording does not tell the drift from noise.
+        if (!offsetAlone) {
+            const double usual = kUsualDrift * halfSpan_;
+            normal(kDrift, kDrift) += 1.0 / (usual * usual);
+            right[kDrift] -= u.clocks.drift * halfSpan_ / (usual * usual);
         }
         // What is kept has no slopes; the smallest of dampings also keeps what the data cannot tell where it is.
         const double damping = 1e-9 * normal.diagonal().maxCoeff();
         normal.diagonal().array() += damping;
         const Vector step = normal.ldlt().solve(right);
-        u = moved(u, step);
+        u = moved(u, step, halfSpan_);
         if (step.cwiseAbs().maxCoeff() < 1e-6) break;
     }
     return u;

@@ -4,7 +4,9 @@
 #include <span>
 #include <vector>
 
+#include "calibration/registration/clock_offset.h"
 #include "calibration/registration/pose_track.h"
+#include "core/base/progress.h"
 
 /// The joint, robust refinement of hand_eye.h: private to it.
 namespace lumorph::hand_eye {
@@ -12,7 +14,7 @@ namespace lumorph::hand_eye {
 /// What is solved for: see HandEye.
 struct Unknowns {
     Pose bFromA, worldBFromWorldA;
-    double timeOffset = 0.0;
+    ClockOffset clocks;
 };
 
 /// What single poses of B show besides what the unknowns explain.
@@ -52,21 +54,26 @@ struct Range {
 /// A body A that is interpolated, and B whose poses are compared with it; both outlive this.
 class Fit {
 public:
-    Fit(const PoseTrack& a, const PoseTrack& b) : a_(a), b_(b) {}
+    Fit(const PoseTrack& a, const PoseTrack& b, const Progress& progress = {})
+        : a_(a), b_(b), halfSpan_(0.5 * (b.poses.back().seconds - b.poses.front().seconds)), progress_(progress) {}
 
     /// Of all poses of B that A saw, too.
     [[nodiscard]] std::vector<Deviation> deviations(const Unknowns& unknowns) const;
 
     /// Gauss-Newton with weights by noise and Cauchy's function, over the poses in `use`, less those in `leave`;
-    /// `offsetAlone` keeps all but the time offset.
+    /// `offsetAlone` keeps all but the time offset. Throws Cancelled.
     [[nodiscard]] Unknowns refined(Unknowns start, Place place, Range use, Range leave = {},
                                    bool offsetAlone = false) const;
 
 private:
     [[nodiscard]] std::optional<Deviation> deviation(const Unknowns& unknowns, std::size_t pose) const;
+    /// A being at `a` then.
+    [[nodiscard]] Deviation deviationFrom(const Pose& a, const Unknowns& unknowns, std::size_t pose) const;
 
     const PoseTrack& a_;
     const PoseTrack& b_;
+    double halfSpan_; ///< of B, seconds
+    Progress progress_;
 };
 
 } // namespace lumorph::hand_eye

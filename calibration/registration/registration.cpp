@@ -157,7 +157,7 @@ std::vector<PointError> boardErrors(const HandEye& joint, const PoseTrack& body,
         glm::dvec3 off(0.0);
         double views = 0.0;
         for (std::size_t i = from + k * count / kFreshBoards; i < from + (k + 1) * count / kFreshBoards; ++i)
-            if (const auto at = poseAt(body, board.poses[i].seconds - joint.timeOffset)) {
+            if (const auto at = poseAt(body, joint.toA(board.poses[i].seconds))) {
                 const Pose told = joint.worldBFromWorldA * *at * inverseOf(joint.bFromA);
                 off += told.position - board.poses[i].pose.position;
                 views += 1.0;

@@ -13,6 +13,7 @@
 #include "calibration/verify/show_prediction.h"
 #include "calibration/verify/silhouette_watch.h"
 #include "core/base/error.h"
+#include "core/base/statistics.h"
 
 namespace lumorph {
 
@@ -27,6 +28,8 @@ constexpr double kMostUnlike = 0.6;   // of the cells with structure
 constexpr double kDarkPicture = 10.0; // grey levels that 99 % stay below
 constexpr double kSharpEnough = 0.35; // of the contrast between neighbours that was predicted
 constexpr double kGainLearns = 0.2;
+constexpr std::size_t kFewestGains = 6;
+constexpr double kGainSpread = 0.15; // of the median, within which half of the gains of one camera lie
 constexpr double kSureSigmas = 4.0;
 constexpr double kRivalsFade = 0.7; // a look
 constexpr int kFewestSquares = 8;
@@ -84,6 +87,17 @@ bool areAlike(const std::vector<Explanation>& explanations, std::size_t other) {
     return other < explanations.size() && explanations[other].explained >= kAlikeShare * explanations.front().explained;
 }
 
+/// The gain that measured cells agree on. Content that looks alike by chance has any; 0 then.
+double commonGain(const std::vector<CellShift>& shifts) {
+    std::vector<double> gains;
+    for (const CellShift& shift : shifts)
+        if (shift.kind == CellShift::Kind::measured) gains.push_back(shift.gain);
+    if (gains.size() < kFewestGains) return 0.0;
+    const double usual = median(gains);
+    for (double& gain : gains) gain = std::abs(gain - usual);
+    return median(std::move(gains)) < kGainSpread * usual ? usual : 0.0;
+}
+
 std::string besideWords(double metres) {
     char text[32];
     std::snprintf(text, sizeof text, "%.1f mm", 1e3 * metres);
@@ -119,6 +133,7 @@ struct DriftWatch::Data {
     Glance glance(const ShowLook& show);
     [[nodiscard]] std::optional<NoVerdict> obstacleOf(const cv::Mat1f& seen, const cv::Mat1f& predicted, int unlike,
                                                       int alike) const;
+    [[nodiscard]] std::vector<CellShift> shiftsOf(const cv::Mat1f& predicted, const cv::Mat1f& seen) const;
     void learnGain(std::vector<double> gains);
     void gather(const Glance& glance);
     [[nodiscard]] Eigen::MatrixXd known(const Eigen::MatrixXd& matrix) const;
@@ -183,8 +198,10 @@ DriftWatch::Data::Glance DriftWatch::Data::glance(const ShowLook& show) {
     const LightModel model(prediction.room(), parts, options.camera);
     int unlike = 0;
     std::vector<double> gains;
-    for (const WatchCell& cell : cells) {
-        const CellShift shift = shiftOf(predicted, seen, cell.place, gain);
+    const std::vector<CellShift> shifts = shiftsOf(predicted, seen);
+    for (std::size_t i = 0; i < cells.size(); ++i) {
+        const WatchCell& cell = cells[i];
+        const CellShift& shift = shifts[i];
         unlike += shift.kind == CellShift::Kind::unlike ? 1 : 0;
         if (shift.kind != CellShift::Kind::measured) continue;
         gains.push_back(shift.gain);
@@ -200,6 +217,24 @@ DriftWatch::Data::Glance DriftWatch::Data::glance(const ShowLook& show) {
     learnGain(std::move(gains));
     silhouettes.look(show.seconds, glance.sent, show.strokes, sharp, sharpSeen, gain);
     return glance;
+}
+
+/// Of all cells. At first no gain is known, and noise over faint content is no other content: the cells that are alike
+/// tell which content is faint. Where too few do, everything counts.
+std::vector<CellShift> DriftWatch::Data::shiftsOf(const cv::Mat1f& predicted, const cv::Mat1f& seen) const {
+    const auto by = [&](double usual) {
+        std::vector<CellShift> shifts;
+        for (const WatchCell& cell : cells) shifts.push_back(shiftOf(predicted, seen, cell.place, usual));
+        return shifts;
+    };
+    std::vector<CellShift> shifts = by(gain);
+    if (gain > 0.0) return shifts;
+    const double common = commonGain(shifts);
+    if (!(common > 0.0)) return shifts;
+    std::vector<CellShift> clear = by(common);
+    const auto told =
+        std::ranges::count_if(clear, [](const CellShift& one) { return one.kind != CellShift::Kind::empty; });
+    return told < kFewestCells ? shifts : clear;
 }
 
 void DriftWatch::Data::learnGain(std::vector<double> gains) {

@@ -264,6 +264,8 @@ std::shared_ptr<const MatchFrame> MatchLoop::step(const MatchWish& wish, double 
     return frame;
 }
 
+void MatchLoop::rest(double seconds) { data_->motion.rest(seconds); }
+
 bool MatchLoop::settled() const noexcept { return data_->settled; }
 
 } // namespace lumorph

@@ -24,6 +24,10 @@ public:
     /// contradicts itself.
     [[nodiscard]] std::shared_ptr<const MatchFrame> step(const MatchWish& wish, double sinceLast);
 
+    /// No frame was made for `seconds`, and the next step does not count them: nothing moves meanwhile but the
+    /// servos, which come to rest at their last commands.
+    void rest(double seconds);
+
     /// Whether another step with the last wish would change nothing: nothing plays, turns or dances, no program moves,
     /// nobody is tracked,
     /// the actuators have arrived (within 1e-5 strokes; or are stopped) and refinement has nothing left to try.

@@ -99,8 +99,9 @@ void MatchThread::Data::run(const std::stop_token& stop) {
     bool first = true;
     while (const std::optional<MatchWish> wish = nextTurn(stop)) {
         const Microseconds now = clock.now();
-        // A rest is no time in which anything moved.
+        // A rest is no time in which anything moved, except servos that were on their way.
         const Microseconds sinceLast = first ? Microseconds{0} : rested ? period : now - started;
+        if (!first && rested && now > started + sinceLast) loop.rest(secondsOf(now - started - sinceLast));
         first = false;
         started = now;
         const bool done = frame(loop, *wish, secondsOf(sinceLast));

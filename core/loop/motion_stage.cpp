@@ -13,7 +13,9 @@ namespace lumorph {
 
 namespace {
 
-constexpr double kArrived = 1e-5; // strokes; a thousandth of a degree
+constexpr double kArrived = 1e-5;   // strokes; a thousandth of a degree
+constexpr double kShortStep = 0.05; // seconds; no step so short is a stop
+constexpr double kStopsAfter = 2.0; // times the steps before
 
 bool sameActuators(const Rig& a, const Rig& b) {
     return std::ranges::equal(a.actuators(), b.actuators(), {}, &Actuator::name, &Actuator::name);
@@ -118,7 +120,8 @@ void MotionStage::goOn(const MotionModel& last, const std::vector<double>& real,
     delayed_.rearrange(places);
 }
 
-void MotionStage::move(std::span<const double> wanted, double seconds, bool stopped) {
+void MotionStage::move(std::span<const double> wanted, double sinceLast, bool stopped) {
+    const double seconds = moving(sinceLast);
     const std::vector<double> before(motion_.positions().begin(), motion_.positions().end());
     if (stopped) {
         motion_.reset(before); // velocities become zero
@@ -134,6 +137,26 @@ void MotionStage::move(std::span<const double> wanted, double seconds, bool stop
     const std::vector<double> stood = real_;
     curves_.follow(commands(), real_);
     look(stood, aims, seconds);
+}
+
+void MotionStage::rest(double seconds) {
+    motion_.reset(std::vector<double>(commands().begin(), commands().end())); // velocities become zero
+    if (lags_.empty()) return;
+    // The last command is done as soon as any, and then nothing happens.
+    const double last = std::min(seconds, usual_);
+    delayed_.step(real_, last);
+    delayed_.step(real_, seconds - last);
+}
+
+double MotionStage::moving(double seconds) {
+    const double longest = std::max(kStopsAfter * usual_, kShortStep);
+    double moving = seconds;
+    if (seconds > longest) {
+        moving = usual_;
+        rest(seconds - moving);
+    }
+    if (seconds > 0.0) usual_ = std::min(seconds, longest);
+    return moving;
 }
 
 bool MotionStage::arrived(std::span<const double> wanted) const {

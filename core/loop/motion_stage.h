@@ -36,7 +36,11 @@ public:
     /// That, one an actuator; empty where no servo was measured.
     [[nodiscard]] std::span<const StrokeRange> reach() const noexcept { return curves_.reach(); }
     /// Moves towards the strokes that are really wanted; while stopped all hold still, and start softly afterwards.
+    /// Servos have come only as far as the last command, however long ago it was given: after a step that is much
+    /// longer than those before they start from there as after a rest, by a step as long as usual.
     void move(std::span<const double> wanted, double seconds, bool stopped);
+    /// No command for `seconds`: the actuators stand where the last ones lead.
+    void rest(double seconds);
     /// Within 1e-5 strokes of what is wanted they have arrived; then a motion ends exactly there.
     [[nodiscard]] bool arrived(std::span<const double> wanted) const;
     /// Nothing that was told is still on its way.
@@ -53,6 +57,8 @@ private:
     [[nodiscard]] bool isAt(std::span<const double> commands) const noexcept;
     void readServos();
     void readLags();
+    /// The part of a step in which servos may be taken to move; for the rest of it they have stood.
+    [[nodiscard]] double moving(double seconds);
     /// What is seen of strokes that were `before` and go on towards `aims`.
     void look(std::span<const double> before, std::span<const double> aims, double seconds);
 
@@ -65,8 +71,9 @@ private:
     DelayedStrokes delayed_;
     std::shared_ptr<const Installation> installation_;
     ServoCurves curves_;
-    double light_ = 0.0;       ///< seconds from a frame to its light
-    std::vector<double> lags_; ///< one an actuator, 0: unknown; empty: of none
+    double usual_ = 1.0 / 60.0; ///< seconds of a step, of late
+    double light_ = 0.0;        ///< seconds from a frame to its light
+    std::vector<double> lags_;  ///< one an actuator, 0: unknown; empty: of none
     std::vector<double> deformedAt_;
     std::shared_ptr<const std::vector<glm::vec3>> deformed_;
 };

@@ -1,8 +1,13 @@
 #include "calibration/registration/clock_offset.h"
 
+#include <algorithm>
 #include <array>
+#include <chrono>
 #include <cmath>
+#include <cstdio>
 #include <random>
+#include <stop_token>
+#include <string_view>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -23,12 +28,13 @@ public:
         for (const Wave& wave : waves_) sum += wave.size * std::sin(wave.rate * t + wave.phase);
         return sum;
     }
-    /// `rate` poses a second from `first` to `last` by the true clock; the track's own clock is `ahead` of it.
-    [[nodiscard]] PoseTrack track(double first, double last, double rate, double ahead) const {
+    /// `rate` poses a second from `first` to `last` by the true clock; the track's own clock is `ahead` of it at time
+    /// 0, and gains `drift` a second.
+    [[nodiscard]] PoseTrack track(double first, double last, double rate, double ahead, double drift = 0.0) const {
         PoseTrack made;
         const glm::dvec3 axis = glm::normalize(glm::dvec3(1.0, 2.0, -0.5));
         for (double t = first; t < last; t += 1.0 / rate)
-            made.poses.push_back({t + ahead, {{}, glm::angleAxis(angle(t), axis)}});
+            made.poses.push_back({t + ahead + drift * t, {{}, glm::angleAxis(angle(t), axis)}});
         return made;
     }
 
@@ -68,6 +74,55 @@ TEST(ClockOffset, TwentyMinutesAtDifferentRatesAreFoundWithinFiveMilliseconds) {
         EXPECT_GT(found.correlation, 0.99) << seed;
         EXPECT_LT(found.runnerUp, 0.9) << seed;
     }
+}
+
+// Two clocks that differ by 50 ppm are 60 ms apart after twenty minutes.
+TEST(ClockOffset, ADriftIsFoundWithTheOffset) {
+    for (const unsigned seed : {171U, 172U, 173U})
+        for (const double drift : {50e-6, seed % 2 == 0 ? -50e-6 : 200e-6}) {
+            const Turning body(seed);
+            const auto since = std::chrono::steady_clock::now();
+            const ClockOffset found =
+                clockOffset(body.track(0.0, 1200.0, 100.0, 0.0), body.track(37.0, 1190.0, 60.0, 86400.25, drift));
+            const double took = std::chrono::duration<double>(std::chrono::steady_clock::now() - since).count();
+            double worst = 0.0;
+            for (double t = 37.0; t < 1190.0; t += 10.0)
+                worst = std::max(worst, std::abs(found.toA(t + 86400.25 + drift * t) - t));
+            std::printf("drift %.0f ppm: found %.2f, clocks within %.2f ms, %.2f s\n", 1e6 * drift, 1e6 * found.drift,
+                        1e3 * worst, took);
+            EXPECT_LT(worst, 0.004) << seed;
+            EXPECT_NEAR(found.drift, drift, 4e-6) << seed;
+            EXPECT_GT(found.correlation, 0.99) << seed;
+            EXPECT_LT(found.runnerUp, 0.9) << seed;
+        }
+}
+
+TEST(ClockOffset, AClockThatJumpsHasNoDrift) {
+    const Turning body(181);
+    PoseTrack jumped = body.track(0.0, 600.0, 60.0, 0.0);
+    for (std::size_t i = jumped.poses.size() / 2; i < jumped.poses.size(); ++i) jumped.poses[i].seconds += 0.1;
+    EXPECT_EQ(clockOffset(body.track(0.0, 600.0, 100.0, 0.0), jumped).drift, 0.0);
+}
+
+TEST(ClockOffset, ReportsItsProgressAndCanBeCancelled) {
+    const Turning body(191);
+    const PoseTrack a = body.track(0.0, 1200.0, 100.0, 0.0), b = body.track(0.0, 1200.0, 60.0, 1.0, 50e-6);
+    std::vector<double> reported;
+    std::stop_source stop;
+    (void)clockOffset(a, b, Progress([&](double fraction, std::string_view) { reported.push_back(fraction); }));
+    EXPECT_TRUE(std::ranges::is_sorted(reported));
+    EXPECT_GT(reported.size(), 20U);
+    EXPECT_GT(reported.back(), 0.9);
+    const std::size_t whole = reported.size();
+    reported.clear();
+    const Progress half(
+        [&](double fraction, std::string_view) {
+            reported.push_back(fraction);
+            if (fraction > 0.3) stop.request_stop();
+        },
+        stop.get_token());
+    EXPECT_THROW((void)clockOffset(a, b, half), Cancelled);
+    EXPECT_LT(reported.size(), whole / 2);
 }
 
 TEST(ClockOffset, CorrelatesAsALoopOverTheTrueSpeedsDoes) {

@@ -18,6 +18,11 @@
 #include "calibration/lab/moved_room.h"
 #include "calibration/verify/output_watch.h"
 #include "calibration/verify/verify_lab.h"
+#include "core/loop/match_loop.h"
+#include "core/loop/show_stage.h"
+#include "core/render/gl/headless_context.h"
+#include "core/render/spatial_renderer.h"
+#include "core/scene/scene_assets.h"
 #include "tests/support/cut_tablet.h"
 #include "tests/support/long_tests.h"
 
@@ -169,6 +174,73 @@ TEST(DriftWatch, FindsThreeMillimetresWithinAMinute) {
             EXPECT_TRUE(report.couldAlsoBe.empty());
             EXPECT_NEAR(report.beside, 3e-3, 1e-3);
         }
+}
+
+/// What the default scene sends: wood and paper, of which most is so faint that noise hides it.
+Image faintPicture(const Installation& believed) {
+    const HeadlessContext context;
+    SpatialRenderer renderer;
+    MatchWish wish;
+    wish.rig = std::make_shared<const Rig>(watchedRig());
+    wish.driver = Driver::hand;
+    wish.strokes.assign(watchedRig().actuatorCount(), 0.0);
+    wish.scene = std::make_shared<const Scene>(defaultScene());
+    wish.installation = std::make_shared<const Installation>(believed);
+    wish.assets = loadSceneAssets(*wish.scene, {});
+    const ManualClock clock;
+    renderer.draw(ShowStage().frame(*MatchLoop(clock).step(wish, 0.0)));
+    return renderer.readProjector(0);
+}
+
+// A watch begins anew with each edit of the room, and knows nothing of its camera's brightness then.
+TEST(DriftWatch, ANewWatchOverFaintContentTellsThatTheProjectorHasMoved) {
+    Installation truth = withLabCamera(defaultInstallation());
+    InstalledProjector& lamp = truth.projectors.front();
+    lamp.camera = withSize(lamp.camera, {960, 540});
+    CalibratedCamera& eye = truth.cameras.front().camera;
+    eye = withSize(eye, {kWatched, kWatched * eye.size.y / eye.size.x});
+    const std::vector<double> strokes(watchedRig().actuatorCount(), 0.0);
+    CheckLabOptions options;
+    options.isLinear = false;
+    std::map<double, Image> pictures;
+    const auto watched = [&](double metres, std::uint32_t seed, const std::function<void(cv::Mat&)>& spoil) {
+        Installation believed = truth;
+        believed.projectors.front().camera.cameraFromWorld[3].x += metres;
+        if (!pictures.contains(metres)) pictures.emplace(metres, faintPicture(believed));
+        const std::vector<Image> sent{pictures.at(metres)};
+        CheckLab lab(truth, watchedRig(), strokes, options, seed);
+        DriftWatch watch(watchedRig(), believed);
+        for (int k = 0; k < 6; ++k) {
+            ShowLook look{kLookEvery * k, lab.photograph(sent), sent, strokes};
+            if (spoil) spoil(look.photograph);
+            watch.look(look);
+        }
+        std::printf("%.1f mm: %s (%.2f mm, %d cells)\n", 1e3 * metres, watch.report().sentence.c_str(),
+                    1e3 * watch.report().beside, watch.report().cells);
+        return watch.report();
+    };
+    for (const std::uint32_t seed : {41U, 42U}) {
+        EXPECT_EQ(watched(0.0, seed, {}).state, DriftReport::State::good);
+        for (const double metres : {2.5e-3, 3e-3}) {
+            const DriftReport moved = watched(metres, seed, {});
+            EXPECT_EQ(moved.state, DriftReport::State::moved);
+            EXPECT_EQ(moved.part, "projector");
+            EXPECT_NEAR(moved.beside, metres, 1e-3);
+        }
+    }
+    // What covers the camera, or darkens it, is no drift, also where nothing is known yet.
+    WatchedShow other(pushedRoom("", kWatched, 44), kWatched, 44);
+    cv::Mat cloth(eye.size.y, eye.size.x, CV_8U);
+    const auto covered = [&](const std::function<void(cv::Mat&)>& spoil) {
+        for (const double metres : {0.0, 3e-3}) EXPECT_EQ(watched(metres, 45, spoil).state, DriftReport::State::blind);
+    };
+    covered([&](cv::Mat& picture) {
+        cv::randn(cloth, 70, 3);
+        picture = cloth;
+    });
+    covered([](cv::Mat& picture) { picture *= 0.03; });
+    covered([&](cv::Mat& picture) { picture = other.photograph(other.content(4000.0)); });
+    covered([](cv::Mat& picture) { cv::flip(picture, picture, 1); });
 }
 
 // Bar: half a millimetre is not reported.

@@ -1,7 +1,11 @@
 #include "calibration/registration/hand_eye.h"
 
+#include <algorithm>
+#include <chrono>
 #include <cstdio>
 #include <filesystem>
+#include <stop_token>
+#include <string_view>
 
 #include <gtest/gtest.h>
 
@@ -23,15 +27,17 @@ struct TwoBodies {
     Pose bFromA{{0.08, -0.05, 0.12}, rotationOfTurn({0.9, -1.7, 0.4})};
     Pose worldBFromWorldA{{1.4, -0.3, 2.2}, rotationOfTurn({-0.5, 2.1, 0.8})};
     double offset = 0.137;
+    double drift = 0.0;
 
     explicit TwoBodies(unsigned seed, glm::dvec3 turns = glm::dvec3(0.6)) : motion(seed, turns) {}
     [[nodiscard]] PoseTrack a(unsigned seed, double seconds = 30.0) const {
         return trackOf([&](double t) { return motion.at(t); }, seconds, 100.0, seed);
     }
-    [[nodiscard]] PoseTrack b(unsigned seed, double rate = 30.0) const {
-        const auto pose = [&](double t) { return worldBFromWorldA * motion.at(t - offset) * inverseOf(bFromA); };
-        return trackOf(pose, 30.0, rate, seed + 1000);
+    [[nodiscard]] PoseTrack b(unsigned seed, double rate = 30.0, double seconds = 30.0) const {
+        const auto pose = [&](double t) { return worldBFromWorldA * motion.at(timeOfA(t)) * inverseOf(bFromA); };
+        return trackOf(pose, seconds, rate, seed + 1000);
     }
+    [[nodiscard]] double timeOfA(double timeOfB) const { return timeOfB - offset - drift * timeOfB; }
 };
 
 double turnOff(const Pose& a, const Pose& b) { return kDegrees * angleOf(glm::conjugate(a.rotation) * b.rotation); }
@@ -90,6 +96,54 @@ TEST(HandEye, ClocksMayBeginYearsApart) {
     for (TimedPose& at : b.poses) at.seconds += 1.7e9;
     const HandEye found = solveHandEye(truth.a(5), b);
     EXPECT_NEAR(found.timeOffset - 1.7e9, truth.offset, 0.002);
+}
+
+// Twenty minutes of two clocks that differ by 50 ppm: 60 ms.
+TEST(HandEye, ClocksThatDriftSpoilNothing) {
+    for (const unsigned seed : {141U, 142U}) {
+        TwoBodies truth(seed);
+        truth.drift = seed % 2 == 0 ? 50e-6 : -50e-6;
+        const PoseTrack a = truth.a(seed, 1200.0), b = truth.b(seed, 12.0, 1200.0);
+        const auto since = std::chrono::steady_clock::now();
+        const HandEye found = solveHandEye(a, b);
+        const double took = std::chrono::duration<double>(std::chrono::steady_clock::now() - since).count();
+        double worst = 0.0;
+        for (double t = 0.0; t < 1200.0; t += 10.0) worst = std::max(worst, std::abs(found.toA(t) - truth.timeOfA(t)));
+        std::printf("%.3f degrees, %.2f mm beside; drift %.2f ppm, sigma %.2f; clocks within %.2f ms; %.1f s\n",
+                    turnOff(found.bFromA, truth.bFromA), placeOff(found.bFromA, truth.bFromA), 1e6 * found.clockDrift,
+                    1e6 * found.driftSigma, 1000.0 * worst, took);
+        EXPECT_LT(turnOff(found.bFromA, truth.bFromA), 0.05) << seed;
+        EXPECT_LT(placeOff(found.bFromA, truth.bFromA), 0.3) << seed;
+        EXPECT_LT(worst, 0.001) << seed;
+        EXPECT_NEAR(found.clockDrift, truth.drift, std::max(4.0 * found.driftSigma, 1e-7)) << seed;
+        EXPECT_TRUE(found.warnings.empty());
+    }
+}
+
+TEST(HandEye, ClocksThatDriftAreTheSameFromEitherSide) {
+    TwoBodies truth(143);
+    truth.drift = 80e-6;
+    const PoseTrack a = truth.a(143, 120.0), b = truth.b(143, 12.0, 120.0);
+    const HandEye there = solveHandEye(a, b), back = solveHandEye(b, a);
+    EXPECT_NEAR(there.clockDrift, 80e-6, 4.0 * there.driftSigma);
+    EXPECT_LT(there.driftSigma, 10e-6);
+    for (const double t : {10.0, 60.0, 110.0}) {
+        EXPECT_NEAR(there.toA(t), truth.timeOfA(t), 0.001) << t;
+        EXPECT_NEAR(back.toA(there.toA(t)), t, 1e-5) << t;
+    }
+}
+
+TEST(HandEye, CanBeCancelled) {
+    const TwoBodies truth(151);
+    for (const double at : {0.05, 0.3, 0.6}) {
+        std::stop_source stop;
+        const Progress progress(
+            [&](double fraction, std::string_view) {
+                if (fraction >= at) stop.request_stop();
+            },
+            stop.get_token());
+        EXPECT_THROW((void)solveHandEye(truth.a(151), truth.b(151), progress), Cancelled) << at;
+    }
 }
 
 TEST(HandEye, DegenerateMotionIsRefusedWithTheOneThatIsMissing) {

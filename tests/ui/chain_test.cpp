@@ -512,7 +512,7 @@ TEST_F(Chain, TheWatchTellsAHostThatTheProjectorHasMoved) {
     pass(12s);
     EXPECT_TRUE(window.studio().notices.at("calibrate").empty());
     studio::editInstallation(window.studio().document, "Believed elsewhere",
-                             [](Installation& room) { room.projectors.front().camera.cameraFromWorld[3].x += 0.0025; });
+                             [](Installation& room) { room.projectors.front().camera.cameraFromWorld[3].x += 0.003; });
     // Looks six seconds apart have to agree for ten.
     ASSERT_TRUE(eventually([&] { return !window.studio().notices.at("calibrate").empty(); }, 120s));
     window.screenshot("watch-moved", 500ms);

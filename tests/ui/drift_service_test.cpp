@@ -1,7 +1,11 @@
 #include "app/studio/calibration/drift_service.h"
 
 #include <cmath>
+#include <condition_variable>
+#include <mutex>
+#include <thread>
 
+#include <QElapsedTimer>
 #include <gtest/gtest.h>
 
 #include "calibration/lab/moved_room.h"
@@ -57,7 +61,10 @@ struct DriftServiceTest : testing::Test {
     DriftServiceTest() { test::needApplication(); }
 
     [[nodiscard]] std::unique_ptr<DriftService> serviceWith(ShowCamera camera) {
-        return std::make_unique<DriftService>(std::make_unique<MadeUpShow>(rig, room, seconds), std::move(camera),
+        return serviceChoosing([camera = std::move(camera)] { return camera; });
+    }
+    [[nodiscard]] std::unique_ptr<DriftService> serviceChoosing(ShowCameraChooser choose) {
+        return std::make_unique<DriftService>(std::make_unique<MadeUpShow>(rig, room, seconds), std::move(choose),
                                               notices, [this] { ++checks; });
     }
     void lookFor(DriftService& service, double duration) {
@@ -113,6 +120,81 @@ TEST_F(DriftServiceTest, TheLabsCameraSeesTheRigThatIsShown) {
     const cv::Mat before = lab(look, show);
     const cv::Mat after = lab(look, {higher, show.room, {}, show.strokes});
     EXPECT_GT(cv::norm(before, after, cv::NORM_INF), 30.0) << "its edges lie elsewhere";
+}
+
+/// A camera of this machine that gives no picture until the test lets it, and says when it is closed, and where.
+struct StuckCamera {
+    std::mutex mutex;
+    std::condition_variable changed;
+    bool isFree = false;
+    int asked = 0;
+    std::vector<std::thread::id> closedBy;
+
+    /// Each is one opened camera.
+    ShowCamera open() {
+        struct Opened {
+            StuckCamera& all;
+            explicit Opened(StuckCamera& of) : all(of) {}
+            Opened(const Opened&) = delete;
+            Opened& operator=(const Opened&) = delete;
+            ~Opened() {
+                const std::scoped_lock lock(all.mutex);
+                all.closedBy.push_back(std::this_thread::get_id());
+            }
+        };
+        return [this, opened = std::make_shared<Opened>(*this)](const ShowLook&, const SentShow&) -> cv::Mat {
+            std::unique_lock lock(mutex);
+            ++asked;
+            changed.wait(lock, [this] { return isFree; });
+            throw DeviceError("camera", "gives no more pictures", "plug it in again");
+        };
+    }
+    [[nodiscard]] bool isAsked(int times) {
+        const std::scoped_lock lock(mutex);
+        return asked >= times;
+    }
+    [[nodiscard]] std::size_t closed() {
+        const std::scoped_lock lock(mutex);
+        return closedBy.size();
+    }
+    void free() {
+        const std::scoped_lock lock(mutex);
+        isFree = true;
+        changed.notify_all();
+    }
+};
+
+TEST_F(DriftServiceTest, StoppingWaitsForNoCamera) {
+    StuckCamera camera;
+    const auto service = serviceChoosing([&] { return camera.open(); });
+    QElapsedTimer since;
+    const auto timed = [&](const std::function<void()>& act) {
+        since.start();
+        act();
+        EXPECT_LT(since.elapsed(), 200) << "milliseconds";
+    };
+    timed([&] { service->setWatching(true); });
+    timed([&] { service->look(seconds); });
+    ASSERT_TRUE(test::eventually([&] { return camera.isAsked(1); }));
+    timed([&] { service->setWatching(false); });
+    EXPECT_FALSE(service->isWatching());
+    EXPECT_EQ(camera.closed(), 0U) << "it is still asked";
+    timed([&] { service->setWatching(true); });
+    timed([&] { service->look(seconds += 2.0); });
+    timed([&] { service->setWatching(false); });
+    EXPECT_FALSE(camera.isAsked(2)) << "not before the first has answered";
+
+    camera.free();
+    ASSERT_TRUE(test::eventually([&] { return !service->isLooking() && camera.closed() == 2; }))
+        << "and the unused one";
+    EXPECT_NE(camera.closedBy.back(), std::this_thread::get_id());
+    EXPECT_EQ(service->output().state, OutputReport().state) << "what a stopped watch has seen is nobody's";
+    service->setWatching(true);
+    service->look(seconds += 2.0);
+    ASSERT_TRUE(test::eventually([&] { return camera.isAsked(2) && !service->isLooking(); }));
+    service->setWatching(false);
+    ASSERT_TRUE(test::eventually([&] { return camera.closed() == 3; }));
+    EXPECT_NE(camera.closedBy.back(), std::this_thread::get_id());
 }
 
 TEST_F(DriftServiceTest, SaysNothingWhereTheCameraIsAway) {

@@ -1,5 +1,8 @@
+#include <condition_variable>
 #include <fstream>
+#include <mutex>
 
+#include <QElapsedTimer>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -182,6 +185,79 @@ TEST_F(InstallationKeeperTest, KeepsAnEditForTheNextStartAndTheOneBefore) {
     ASSERT_EQ(keeper->earlier().size(), 1U);
     keeper->bringBack(keeper->earlier().front());
     EXPECT_EQ(room().tableSize, measuredRoom().tableSize);
+}
+
+TEST_F(InstallationKeeperTest, AnEditIsWrittenWhileTheWindowGoesOn) {
+    editInstallation(world.document, "Table", [](Installation& edited) { edited.tableSize = {1.5F, 1.0F}; });
+    editInstallation(world.document, "Table", [](Installation& edited) { edited.tableSize = {1.6F, 1.1F}; });
+    ASSERT_TRUE(eventually([&] { return *store.load() == room(); }));
+    EXPECT_EQ(store.earlier().size(), 1U) << "the newest alone";
+}
+
+TEST_F(InstallationKeeperTest, WhatTheDiskRefusesIsToldAndTriedAgain) {
+    fs::remove_all(folder);
+    std::ofstream(folder) << "no folder";
+    editInstallation(world.document, "Table", [](Installation& edited) { edited.tableSize = {1.5F, 1.0F}; });
+    ASSERT_TRUE(eventually([&] { return !world.notices.at("project").empty(); }));
+    EXPECT_THAT(world.notice("project").why.toStdString(), testing::HasSubstr("could not be kept for the next start"));
+    fs::remove(folder);
+    ASSERT_TRUE(world.press("project", "Try again"));
+    ASSERT_TRUE(eventually([&] { return fs::exists(store.file()) && *store.load() == room(); }));
+    fs::remove_all(folder);
+    std::ofstream(folder) << "no folder";
+    editInstallation(world.document, "Table", [](Installation& edited) { edited.tableSize = {1.7F, 1.0F}; });
+    world.notices.dismissAll();
+    keeper.reset(); // the end of the program
+    EXPECT_FALSE(world.notices.at("project").empty());
+    fs::remove(folder);
+}
+
+TEST_F(InstallationKeeperTest, AnEditBeforeADragIsKeptThoughTheProgramEndsInTheDrag) {
+    editInstallation(world.document, "Table", [](Installation& edited) { edited.tableSize = {1.5F, 1.0F}; });
+    const Installation before = room();
+    world.document.preview([](StudioState& state) {
+        Installation dragged = *state.installation;
+        dragged.tableSize.x = 1.9F;
+        state.installation = std::make_shared<const Installation>(dragged);
+    });
+    ASSERT_TRUE(world.document.previewing());
+    keeper.reset();
+    EXPECT_EQ(*store.load(), before);
+}
+
+TEST(InstallationWriter, TheNewestIsWrittenHoweverSlowTheDisk) {
+    std::mutex mutex;
+    std::condition_variable changed;
+    bool isDiskReady = false;
+    std::vector<float> written;
+    const auto write = [&](const Installation& installation) {
+        std::unique_lock lock(mutex);
+        changed.wait(lock, [&] { return isDiskReady; });
+        written.push_back(installation.tableSize.x);
+    };
+    const auto tableOf = [](float size) {
+        auto installation = std::make_shared<Installation>(defaultInstallation());
+        installation->tableSize.x = size;
+        return installation;
+    };
+    std::vector<float> done;
+    {
+        InstallationWriter writer(write, [&](const std::shared_ptr<const Installation>& one, std::exception_ptr) {
+            done.push_back(one->tableSize.x); // one thread at a time, and read after its end
+        });
+        QElapsedTimer since;
+        since.start();
+        for (int i = 1; i <= 100; ++i) writer.offer(tableOf(static_cast<float>(i)));
+        EXPECT_LT(since.elapsed(), 1000) << "nobody waits for the disk";
+        const std::scoped_lock lock(mutex);
+        EXPECT_TRUE(written.empty());
+        isDiskReady = true;
+        changed.notify_all();
+    }
+    EXPECT_LE(written.size(), 2U) << "what waited behind the first is passed over";
+    ASSERT_FALSE(written.empty());
+    EXPECT_EQ(written.back(), 100.0F) << "the end of the program waits for it";
+    EXPECT_EQ(done, written);
 }
 
 TEST_F(InstallationKeeperTest, WhileAnotherStudioHasTheRoomNothingIsWritten) {

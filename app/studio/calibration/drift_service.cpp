@@ -112,17 +112,18 @@ ShowCamera machineShowCamera(const std::string& address) {
     };
 }
 
-/// A thread that looks whenever it is told to.
+/// A thread that looks whenever it is told to. Cameras are opened, used and closed in it alone.
 class DriftService::Watcher {
 public:
-    Watcher(DriftService& owner, ShowCamera camera)
-        : owner_(owner), camera_(std::move(camera)), thread_([this](const std::stop_token& stop) { run(stop); }) {}
+    explicit Watcher(DriftService& owner)
+        : owner_(owner), thread_([this](const std::stop_token& stop) { run(stop); }) {}
 
     struct Task {
         int session = 0;
         double seconds = 0.0;
         bool isForDrift = false;
         SentShow show;
+        ShowCamera camera; ///< with the first of its session
     };
     void give(Task task) {
         {
@@ -131,26 +132,45 @@ public:
         }
         ready_.notify_one();
     }
+    /// Looks of sessions before this one are nobody's, and their camera is closed.
+    void begin(int session) {
+        {
+            const std::lock_guard lock(mutex_);
+            wanted_ = session;
+        }
+        ready_.notify_one();
+    }
 
 private:
     void run(const std::stop_token& stop) {
-        for (;;) {
-            std::unique_lock lock(mutex_);
-            if (!ready_.wait(lock, stop, [this] { return task_.has_value(); })) return;
-            const Task task = *std::exchange(task_, std::nullopt);
+        std::unique_lock lock(mutex_);
+        while (ready_.wait(lock, stop, [this] { return task_ || (camera_ && wanted_ != ofCamera_); })) {
+            std::optional<Task> task = std::exchange(task_, std::nullopt);
+            const int wanted = wanted_;
             lock.unlock();
-            std::optional<DriftReport> drift;
-            OutputReport output;
-            try {
-                std::tie(drift, output) = look(task);
-            } catch (const std::exception& error) {
-                output = {OutputReport::State::blind, error.what()};
-            }
-            QMetaObject::invokeMethod(
-                &owner_,
-                [&owner = owner_, session = task.session, drift, output] { owner.take(session, drift, output); },
-                Qt::QueuedConnection);
+            if (wanted != ofCamera_) camera_ = nullptr;
+            if (task) perform(*std::move(task), wanted);
+            lock.lock();
         }
+        lock.unlock();
+        camera_ = nullptr;
+    }
+
+    void perform(Task task, int wanted) {
+        std::optional<DriftReport> drift;
+        OutputReport output;
+        if (task.camera) {
+            camera_ = std::move(task.camera);
+            ofCamera_ = task.session;
+        }
+        try {
+            if (task.session == wanted) std::tie(drift, output) = look(task);
+        } catch (const std::exception& error) {
+            output = {OutputReport::State::blind, error.what()};
+        }
+        QMetaObject::invokeMethod(
+            &owner_, [&owner = owner_, session = task.session, drift, output] { owner.take(session, drift, output); },
+            Qt::QueuedConnection);
     }
 
     std::pair<std::optional<DriftReport>, OutputReport> look(const Task& task) {
@@ -182,22 +202,24 @@ private:
     }
 
     DriftService& owner_;
-    ShowCamera camera_;
+    ShowCamera camera_; ///< the thread's, as all that follows up to the mutex
+    int ofCamera_ = -1; ///< its session
     int session_ = -1;
     std::shared_ptr<const Rig> rig_;
     std::shared_ptr<const Installation> room_;
     std::unique_ptr<DriftWatch> drift_;
     std::unique_ptr<OutputWatch> output_;
-    std::mutex mutex_;
+    std::mutex mutex_; ///< of what follows
     std::condition_variable_any ready_;
     std::optional<Task> task_;
+    int wanted_ = 0;      ///< session
     std::jthread thread_; ///< last: it uses the rest
 };
 
-DriftService::DriftService(std::unique_ptr<SentShowSource> show, ShowCamera camera, Notices& notices,
+DriftService::DriftService(std::unique_ptr<SentShowSource> show, ShowCameraChooser choose, Notices& notices,
                            std::function<void()> check, QObject* parent)
-    : QObject(parent), show_(std::move(show)), notices_(notices), check_(std::move(check)), timer_(new QTimer(this)),
-      watcher_(std::make_unique<Watcher>(*this, std::move(camera))) {
+    : QObject(parent), show_(std::move(show)), choose_(std::move(choose)), notices_(notices), check_(std::move(check)),
+      timer_(new QTimer(this)), watcher_(std::make_unique<Watcher>(*this)) {
     clock_.start();
     timer_->setInterval(kLookMilliseconds);
     connect(timer_, &QTimer::timeout, this, [this] { look(1e-3 * static_cast<double>(clock_.elapsed())); });
@@ -208,14 +230,20 @@ DriftService::~DriftService() = default;
 bool DriftService::isWatching() const noexcept { return timer_->isActive(); }
 
 void DriftService::setWatching(bool on) {
-    ++session_; // results of looks before are nobody's
+    watcher_->begin(++session_); // results of looks before are nobody's
     looks_ = 0;
     drift_ = {};
     output_ = {};
     tell();
     on ? timer_->start() : timer_->stop();
     if (!on) show_->rest();
+    camera_ = nullptr; // never opened
+    if (on) choose();
     emit changed();
+}
+
+void DriftService::choose() {
+    if (std::exchange(chosen_, session_) != session_) camera_ = choose_();
 }
 
 void DriftService::look(double seconds) {
@@ -223,7 +251,9 @@ void DriftService::look(double seconds) {
     std::optional<SentShow> show = show_->now();
     if (!show || !show->rig || !show->room || show->room->projectors.empty()) return;
     isLooking_ = true;
-    watcher_->give({session_, seconds, looks_++ % kLooksADrift == 0, std::move(*show)});
+    choose();
+    watcher_->give(
+        {session_, seconds, looks_++ % kLooksADrift == 0, std::move(*show), std::exchange(camera_, nullptr)});
 }
 
 void DriftService::take(int session, std::optional<DriftReport> drift, OutputReport output) {

@@ -47,6 +47,8 @@ using ShowCamera = std::function<cv::Mat(const ShowLook& look, const SentShow& s
 [[nodiscard]] ShowCamera labShowCamera(Installation truth);
 /// A camera of this machine, such as "/dev/video0", opened with the first look and again after it failed.
 [[nodiscard]] ShowCamera machineShowCamera(const std::string& address);
+/// Gives the camera of a watch that begins; called in the window's thread, so it opens nothing.
+using ShowCameraChooser = std::function<ShowCamera()>;
 
 /// Watches the running show through a camera, beside the window: whether its light lies where it belongs, and whether
 /// it comes out of the projectors at all. Each trouble is one notice at the place "calibrate", with a button; it goes
@@ -58,11 +60,12 @@ public:
     static constexpr int kLooksADrift = 3; ///< of which one also looks for drift
 
     /// `check`: what the notices' button does.
-    DriftService(std::unique_ptr<SentShowSource> show, ShowCamera camera, Notices& notices, std::function<void()> check,
-                 QObject* parent = nullptr);
-    ~DriftService() override; ///< waits for the look that runs
+    DriftService(std::unique_ptr<SentShowSource> show, ShowCameraChooser choose, Notices& notices,
+                 std::function<void()> check, QObject* parent = nullptr);
+    ~DriftService() override; ///< the only call that waits for a look that runs: for the end of the program
 
-    /// Begins anew, or ends; what was said is taken back.
+    /// Begins anew, or ends; what was said is taken back. The camera is closed beside the window, as soon as it has
+    /// answered; a watch that begins before that looks then, through a camera of its own.
     void setWatching(bool on);
     [[nodiscard]] bool isWatching() const noexcept;
     /// A look at this time (seconds, by any clock that goes forward), unless one still runs. The timer calls it.
@@ -78,10 +81,12 @@ signals:
 private:
     class Watcher;
     void take(int session, std::optional<DriftReport> drift, OutputReport output);
+    void choose();
     void tell();
     void post(bool isThere, Notice::Level level, const QString& subject, const std::string& why, const QString& remedy);
 
     std::unique_ptr<SentShowSource> show_;
+    ShowCameraChooser choose_;
     Notices& notices_;
     std::function<void()> check_;
     QTimer* timer_;
@@ -90,6 +95,8 @@ private:
     OutputReport output_;
     std::map<QString, std::string> told_; ///< by subject: why
     int session_ = 0, looks_ = 0;
+    int chosen_ = -1;   ///< the session whose camera was chosen
+    ShowCamera camera_; ///< until the first look takes it, and opens it
     bool isLooking_ = false;
     std::unique_ptr<Watcher> watcher_; ///< last: its thread hands results to the rest
 };

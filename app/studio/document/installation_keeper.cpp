@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include <QCoreApplication>
 #include <QCryptographicHash>
 #include <QFileInfo>
 
@@ -32,11 +33,20 @@ InstallationKeeper::InstallationKeeper(Settings& settings, StudioDocument& docum
                                        Notices& notices)
     : settings_(settings), document_(document), notices_(notices), store_(settings.folder() / "installation") {
     load();
+    writer_ = std::make_unique<InstallationWriter>(
+        [store = store_](const Installation& installation) mutable { store.keep(installation); },
+        [this](std::shared_ptr<const Installation> written, std::exception_ptr failure) {
+            QMetaObject::invokeMethod(
+                this, [this, written = std::move(written), failure] { takeWritten(written, failure); },
+                Qt::QueuedConnection);
+        });
     due_.setSingleShot(true);
     due_.setInterval(kEditsRestMilliseconds);
     connect(&due_, &QTimer::timeout, this, &InstallationKeeper::keep);
     connect(&document, &StudioDocument::changed, this, [this](StateParts parts) {
-        if (parts & StatePart::installation) due_.start();
+        if (!(parts & StatePart::installation)) return;
+        if (!document_.previewing()) settled_ = document_.state().installation;
+        due_.start();
     });
     connect(&projects, &ProjectService::openedElsewhere, this, &InstallationKeeper::compare);
     connect(&settings, &Settings::readOnlyChanged, this, [this] {
@@ -45,7 +55,9 @@ InstallationKeeper::InstallationKeeper(Settings& settings, StudioDocument& docum
 }
 
 InstallationKeeper::~InstallationKeeper() {
-    if (due_.isActive()) keep();
+    if (due_.isActive()) offer();
+    writer_.reset();
+    QCoreApplication::sendPostedEvents(this, QEvent::MetaCall); // what it could not write is told
 }
 
 void InstallationKeeper::load() {
@@ -61,7 +73,7 @@ void InstallationKeeper::load() {
                 {tr("Bring back the last one"), [this, file = files.front()] { bringBack(file); }});
         notices_.post(kPlace, notice);
     }
-    kept_ = document_.state().installation;
+    kept_ = offered_ = settled_ = document_.state().installation;
 }
 
 /// The other studio may have measured the room meanwhile, so its figures come first.
@@ -95,13 +107,30 @@ void InstallationKeeper::keep() {
         due_.start();
         return;
     }
-    const auto installation = document_.state().installation;
-    if (installation == kept_ || *installation == *kept_) return;
+    settled_ = document_.state().installation;
+    offer();
+}
+
+void InstallationKeeper::offer() {
+    if (settled_ == offered_ || *settled_ == *offered_) return;
     if (settings_.readOnly()) return reportReadOnly();
+    offered_ = settled_;
+    writer_->offer(offered_);
+}
+
+/// What the writer has done.
+void InstallationKeeper::takeWritten(const std::shared_ptr<const Installation>& written,
+                                     const std::exception_ptr& failure) {
+    const bool isNewest = written == offered_;
+    if (!failure) {
+        kept_ = written;
+        if (isNewest) notices_.dismiss(kPlace, subject());
+        return;
+    }
+    if (!isNewest) return; // the newer one is tried by itself
+    offered_ = kept_;
     try {
-        store_.keep(*installation);
-        kept_ = installation;
-        notices_.dismiss(kPlace, subject());
+        std::rethrow_exception(failure);
     } catch (const std::exception& error) {
         Notice notice = noticeOf(error);
         notice.why = tr("what stands in the room could not be kept for the next start: %1").arg(notice.why);

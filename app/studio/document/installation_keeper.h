@@ -5,20 +5,22 @@
 
 #include "app/studio/base/notices.h"
 #include "app/studio/base/settings.h"
+#include "app/studio/document/installation_writer.h"
 #include "app/studio/document/project_service.h"
 #include "core/scene/installation_store.h"
 
 namespace lumorph::studio {
 
 /// Keeps what stands in the room for the next start, in the user's configuration, and asks once which installation to
-/// use where a project comes with another. While the settings are read only it writes nothing, and says so. Lives in
-/// the window's thread.
+/// use where a project comes with another. Edits are written beside the window, the newest of them; a version is
+/// written before `takeVersion` returns. While the settings are read only it writes nothing, and says so. Lives in the
+/// window's thread.
 class InstallationKeeper : public QObject {
     Q_OBJECT
 public:
     /// Puts the one that was kept last into the document. The others outlive it.
     InstallationKeeper(Settings& settings, StudioDocument& document, ProjectService& projects, Notices& notices);
-    ~InstallationKeeper() override; ///< keeps what has not been kept yet
+    ~InstallationKeeper() override; ///< keeps what has not been kept yet, and waits until it is on disk
 
     /// The files of earlier ones, the newest first.
     [[nodiscard]] std::vector<std::filesystem::path> earlier() const { return store_.earlier(); }
@@ -44,6 +46,9 @@ signals:
 private:
     void load();
     void keep();
+    /// The newest installation that no drag is at, unless it is kept or about to be.
+    void offer();
+    void takeWritten(const std::shared_ptr<const Installation>& written, const std::exception_ptr& failure);
     void takeOver();
     void reportReadOnly();
     void compare(const QString& project, const std::shared_ptr<const Installation>& installation);
@@ -55,8 +60,11 @@ private:
     StudioDocument& document_;
     Notices& notices_;
     InstallationStore store_;
-    std::shared_ptr<const Installation> kept_; ///< what the file holds
+    std::shared_ptr<const Installation> kept_;    ///< what the file holds
+    std::shared_ptr<const Installation> offered_; ///< what it will hold; the same where nothing is under way
+    std::shared_ptr<const Installation> settled_; ///< the document's, before a drag that goes on
     QTimer due_;
+    std::unique_ptr<InstallationWriter> writer_; ///< last: what it says is taken by the rest
 };
 
 } // namespace lumorph::studio

@@ -11,8 +11,6 @@ namespace {
 
 constexpr auto kPlace = "viewport";
 constexpr std::int64_t kSecond = 1000;
-constexpr double kSmoothing = 0.05; // of delays
-constexpr double kLongest = 300.0;  // milliseconds; a frame that waited for something else counts for no more
 
 /// Whether a picture answers what is wanted: an observer who moves gets those from where he just was.
 bool answers(const ShowView& picture, const ShowView& wanted) {
@@ -83,6 +81,8 @@ void ShowFeed::send() {
     request.match = loop_.frame();
     request.measure = measuring_;
     for (const auto& [id, wanted] : wanted_) request.views.push_back({id, wanted.view, wanted.pixels});
+    // What nobody wanted when it came is as old as the view for which it is drawn later.
+    if (wanted_.empty() && request.match) measured_ = request.match->number;
     renderer_.requestShow(std::move(request));
 }
 
@@ -107,10 +107,9 @@ void ShowFeed::take() {
         endToEnd_ = age;
         // While the loop rests, frames of long ago are drawn; and shaders compile before the first picture.
         const std::uint64_t number = newest_.match->number;
-        if (count_ > 0 && number != measured_)
-            usualDelay_ += (usualDelay_ == 0.0 ? 1.0 : kSmoothing) * (std::min(age, kLongest) - usualDelay_);
+        if (count_ > 0 && number != measured_) delay_.add(age);
         measured_ = number;
-        loop_.setLightDelay(1e-3 * usualDelay_);
+        loop_.setLightDelay(1e-3 * delay_.usual());
     }
     ++count_;
     emit shown();

@@ -12,6 +12,7 @@
 
 #include "app/studio/base/notices.h"
 #include "app/studio/document/studio_loop.h"
+#include "app/studio/rendering/light_delay.h"
 #include "app/studio/rendering/render_thread.h"
 #include "app/studio/rendering/show_request.h"
 
@@ -42,8 +43,8 @@ public:
     [[nodiscard]] const DrawnShow& newest() const noexcept { return newest_; }
     [[nodiscard]] double rate() const;     ///< pictures a second
     [[nodiscard]] double endToEnd() const; ///< milliseconds from the loop's frame to its pictures, the last one
-    [[nodiscard]] double usualDelay() const noexcept { return usualDelay_; } ///< that, of late; 0 before the first
-    [[nodiscard]] std::uint64_t count() const noexcept { return count_; }    ///< frames shown so far
+    [[nodiscard]] double usualDelay() const noexcept { return delay_.usual(); } ///< that, of late; 0 before the first
+    [[nodiscard]] std::uint64_t count() const noexcept { return count_; }       ///< frames shown so far
 
 signals:
     void shown();         ///< there are new pictures
@@ -68,8 +69,8 @@ private:
     DrawnShow newest_;
     std::vector<std::int64_t> shownAt_; ///< milliseconds
     double endToEnd_ = 0.0;
-    double usualDelay_ = 0.0;    ///< of late, milliseconds
-    std::uint64_t measured_ = 0; ///< number of the last frame that it was measured of
+    LightDelay delay_;
+    std::uint64_t measured_ = 0; ///< number of the last frame that counts for it, or that nobody wanted
     std::uint64_t count_ = 0;
     std::set<std::string> told_; ///< warnings
     int views_ = 0;

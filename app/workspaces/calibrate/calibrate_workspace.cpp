@@ -89,10 +89,11 @@ CalibrateWorkspace::CalibrateWorkspace(Studio& studio)
 
 /// By the room's camera; without one by the lab's, which sees what truly stands there as the watch begins.
 std::unique_ptr<DriftService> CalibrateWorkspace::makeWatch() {
-    const Installation& room = *studio_.document.state().installation;
-    const std::string address = room.cameras.empty() ? std::string() : room.cameras.front().address;
-    ShowCamera camera =
-        address.empty() ? labShowCamera(withLabCamera(studio_.lab.truth())) : machineShowCamera(address);
+    const auto camera = [this] {
+        const Installation& room = *studio_.document.state().installation;
+        const std::string address = room.cameras.empty() ? std::string() : room.cameras.front().address;
+        return address.empty() ? labShowCamera(withLabCamera(studio_.lab.truth())) : machineShowCamera(address);
+    };
     const auto check = [this] {
         emit studio_.commands.workspaceWanted("calibrate");
         selection_.setWhole(true);
@@ -103,7 +104,7 @@ std::unique_ptr<DriftService> CalibrateWorkspace::makeWatch() {
         const auto& cameras = studio_.document.state().installation->cameras;
         if (!cameras.empty() && !cameras.front().address.empty()) chain_.setWay(LinkWay::live);
     };
-    return std::make_unique<DriftService>(sentShowOf(studio_.show), std::move(camera), studio_.notices, check);
+    return std::make_unique<DriftService>(sentShowOf(studio_.show), camera, studio_.notices, check);
 }
 
 void CalibrateWorkspace::addWatchCommand() {
@@ -118,9 +119,8 @@ void CalibrateWorkspace::addWatchCommand() {
     });
     followWatch();
     connect(watchAction_, &QAction::toggled, this, [this](bool on) {
-        if (watch_) watch_->setWatching(false); // takes back what it said
-        watch_ = on ? makeWatch() : nullptr;
-        if (watch_) watch_->setWatching(true);
+        if (!watch_) watch_ = makeWatch();
+        watch_->setWatching(on);
     });
 }
 

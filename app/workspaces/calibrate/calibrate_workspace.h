@@ -48,7 +48,7 @@ private:
     LiveService live_;
     ChainService chain_;
     QAction* watchAction_ = nullptr;
-    std::unique_ptr<DriftService> watch_; ///< of the running show, while it is wanted
+    std::unique_ptr<DriftService> watch_; ///< of the running show; made when it is wanted first
     bool active_ = false, seen_ = false;
     bool looks_ = false; ///< seen with the camera's picture
     CalibrateSelection selection_;

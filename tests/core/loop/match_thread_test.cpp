@@ -6,6 +6,8 @@
 #include <limits>
 #include <mutex>
 #include <numbers>
+#include <thread>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -131,6 +133,39 @@ TEST_F(MatchThreadTest, PausedItMakesOneFrameForAWishAndThenGoesOnWhereItWas) {
     const double turned = std::remainder(next->turned.inRadians() - paused->turned.inRadians(), 2.0 * std::numbers::pi);
     EXPECT_GT(turned, 0.0);
     EXPECT_LE(turned, wish.spin * ran) << "the pause is no time";
+}
+
+TEST_F(MatchThreadTest, HeldUpItTakesServosNoFartherThanTheirCommands) {
+    constexpr double kPeriod = 1.0 / 200.0;
+    MatchThread* running = nullptr;
+    std::vector<std::shared_ptr<const MatchFrame>> seen; // by the loop's thread, which is held up once
+    std::mutex mutex;
+    std::size_t heldAt = 0;
+    MatchThread thread(
+        [&] {
+            const std::scoped_lock lock(mutex);
+            if (!running) return;
+            seen.push_back(running->latest());
+            if (heldAt != 0 || seen.back()->estimatedStrokes[0] < 0.2) return;
+            heldAt = seen.size();
+            std::this_thread::sleep_for(std::chrono::milliseconds(500));
+        },
+        1.0 / kPeriod);
+    {
+        const std::scoped_lock lock(mutex);
+        running = &thread;
+    }
+    thread.wish(held(1.0));
+    ASSERT_TRUE(frames_.wait([&] {
+        const std::scoped_lock lock(mutex);
+        return heldAt > 0 && seen.size() > heldAt + 3;
+    }));
+    const std::scoped_lock lock(mutex);
+    const double velocity = field_->rig.actuators()[0].maxVelocity;
+    const MatchFrame &before = *seen[heldAt - 1], &after = *seen[heldAt];
+    EXPECT_GT(after.time - before.time, Microseconds{490'000});
+    EXPECT_LE(after.estimatedStrokes[0], before.estimatedStrokes[0] + 0.05 * velocity);
+    EXPECT_LE(after.commandedStrokes[0], before.commandedStrokes[0] + 0.05 * velocity);
 }
 
 TEST_F(MatchThreadTest, KeepsItsRate) {

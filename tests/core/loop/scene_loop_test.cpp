@@ -231,6 +231,58 @@ TEST_F(SceneLoopTest, DeviceAndHeadArePredictedForTheMomentOfTheLight) {
     EXPECT_TRUE(loop_.settled());
 }
 
+TEST_F(SceneLoopTest, AfterAStopLightFollowsWhatTheTrackerSeesThen) {
+    SceneInRoom scene = emptyScene();
+    scene.predictionSeconds = 0.06;
+    MatchWish wish = wishWith(scene);
+    const auto board = std::make_shared<PoseBoard>();
+    wish.poses = board;
+    const auto device = board->stream("tablet", PoseRole::device);
+    const auto head = board->stream("Ada", PoseRole::head);
+    // Both swing by 0.2 m, at 0.3 m/s where they are fastest.
+    const auto x = [](double t) { return 0.2 * std::sin(1.5 * t); };
+    const auto seconds = [&] { return 1e-6 * static_cast<double>(clock_.now().count()); };
+    const auto push = [&] {
+        ASSERT_TRUE(head->push({clock_.now(), true, {{x(seconds()), 0.5, 0.4}, {1, 0, 0, 0}}}));
+        ASSERT_TRUE(device->push({clock_.now(), true, {{0.0, 0.1, -x(seconds())}, {1, 0, 0, 0}}}));
+    };
+    const auto offOf = [&](const MatchFrame& frame, double ahead) {
+        const double at = x(seconds() + ahead);
+        return std::max(std::abs(frame.eye->x - at), std::abs(frame.worldFromDevice[3].z + at));
+    };
+    std::shared_ptr<const MatchFrame> frame;
+    for (const bool tracksMeanwhile : {true, false})
+        for (const double stop : {3.0, 3.7, 0.2, 3.2}) {
+            for (int k = 0; k < 120; ++k) {
+                clock_.advance(Microseconds{8'000});
+                push();
+                frame = loop_.step(wish, 0.008);
+            }
+            ASSERT_TRUE(frame->eye);
+            EXPECT_LT(offOf(*frame, 0.06), 2e-3);
+            for (int k = 0; k < std::lround(stop / 0.008); ++k) {
+                clock_.advance(Microseconds{8'000});
+                if (tracksMeanwhile) push();
+            }
+            frame = loop_.step(wish, stop);
+            if (tracksMeanwhile) {
+                ASSERT_TRUE(frame->eye);
+                EXPECT_LT(offOf(*frame, 0.06), 2e-3) << stop;
+            } else if (stop > 1.0) {
+                EXPECT_FALSE(frame->eye) << "nobody knows where the head is now";
+                EXPECT_EQ(frame->worldFromDevice, scene.worldFromDevice);
+            }
+            // The first poses after a stop say where they are, and nothing of a motion across it.
+            for (int k = 0; k < 12; ++k) {
+                clock_.advance(Microseconds{8'000});
+                push();
+                frame = loop_.step(wish, 0.008);
+                ASSERT_TRUE(frame->eye);
+                EXPECT_LT(offOf(*frame, 0.06), 0.3 * 0.06 + 2e-3) << stop << " s, sample " << k;
+            }
+        }
+}
+
 TEST_F(SceneLoopTest, ASceneNeedsARoom) {
     MatchWish wish = wishWith(emptyScene());
     const auto frame = step(wish);
