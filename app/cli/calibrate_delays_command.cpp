@@ -1,3 +1,4 @@
+#include <array>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
@@ -24,7 +25,7 @@ struct DelaysArguments {
 nlohmann::json delayJson(const MeasuredDelay& delay) {
     return {{"ms", 1e3 * delay.seconds},
             {"sigmaMs", 1e3 * delay.sigma},
-            {"halvesDifferMs", 1e3 * delay.halvesDiffer},
+            {"halvesDifferMs", delay.halvesDiffer ? nlohmann::json(1e3 * *delay.halvesDiffer) : nlohmann::json()},
             {"events", delay.events}};
 }
 
@@ -52,8 +53,16 @@ nlohmann::json delaysJson(const MeasuredDelays& delays, bool applied) {
             {"way", "simulated"}};
 }
 
+std::string milliseconds(double seconds) {
+    std::array<char, 32> text{};
+    std::snprintf(text.data(), text.size(), "%.1f ms", 1e3 * seconds);
+    return text.data();
+}
+
 void printDelay(const char* name, const MeasuredDelay& delay) {
-    std::printf("  %-22s %6.1f +- %.1f ms\n", name, 1e3 * delay.seconds, 1e3 * delay.sigma);
+    const std::string halves = delay.halvesDiffer ? milliseconds(*delay.halvesDiffer) : "-";
+    std::printf("  %-22s %6.1f +- %.1f ms, halves differ by %s\n", name, 1e3 * delay.seconds, 1e3 * delay.sigma,
+                halves.c_str());
 }
 
 void printDelays(const MeasuredDelays& delays, bool applied) {
