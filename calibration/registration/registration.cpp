@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <utility>
 
 #include <glm/geometric.hpp>
@@ -26,6 +27,9 @@ using registration::TipRow;
 // figures are good for.
 constexpr double kFreshTip = 0.0015, kFreshTracker = 0.0025, kFreshBoard = 0.006, kFreshDevice = 0.002,
                  kFreshEye = 0.01;
+// How well a tip is known along each axis, metres: one that was measured but not said how well, and one that was typed
+// in. A pivot believes too much of itself where neighbouring poses err alike for long.
+constexpr double kUsualTip = 0.0002, kEnteredTip = 0.001, kLeastTip = 5e-5;
 constexpr double kTable = 0.004;       ///< metres over the table from which on a point may be of the device
 constexpr std::size_t kFreshShare = 5; ///< of a board's recording, one in so many is kept for the fresh points
 constexpr std::size_t kFreshBoards = 8;
@@ -39,6 +43,29 @@ Pose poseOf(const glm::mat4& rigid) {
 Figures figuresIn(const Installation& room) {
     return {poseOf(room.worldFromTracker), glm::dvec3(room.pointerTip), poseOf(room.bodyFromDevice),
             glm::dvec3(room.eyeFromHead)};
+}
+
+/// The tip that is believed, and how well it is known along each axis.
+TipRow tipOf(const Installation& room, const glm::dvec3& tip) {
+    const Origin& origin = room.origins.pointer;
+    const double said = sigmaOf(origin).metres / std::numbers::sqrt3;
+    const double sigma = !origin.isCalibrated() ? kEnteredTip : said > 0.0 ? std::max(said, kLeastTip) : kUsualTip;
+    return {tip, glm::dvec3(sigma)};
+}
+
+/// How well tip and tracker are known for lines of sight. A tracker that was not measured has no sigma to carry.
+SightBase sightBaseOf(const Installation& room, const glm::dvec3& tip) {
+    SightBase base{tipOf(room, tip)};
+    const Origin& tracker = room.origins.tracker;
+    if (!tracker.isCalibrated()) return base;
+    const MeasuredSigma said = sigmaOf(tracker);
+    base.trackerShift = said.metres / std::numbers::sqrt3;
+    base.trackerTurn = said.radians / std::numbers::sqrt3;
+    if (tracker.date < room.origins.pointer.date) return base; // another tip
+    const double shared = std::min(said.tipMetres / std::numbers::sqrt3, base.trackerShift);
+    base.tipShare = std::min(1.0, shared / base.tip.sigma.x);
+    base.trackerShift = std::sqrt(base.trackerShift * base.trackerShift - shared * shared);
+    return base;
 }
 
 /// Runs a registration as a whole or not at all: what is refused leaves the installation as it was.
@@ -66,7 +93,7 @@ Origin measured(std::string method, const MeasuredSigma& sigma) {
     return {Origin::Way::measured, withSigma(std::move(method), sigma), utcDate()};
 }
 Origin measured(std::string method, const Registration& result) {
-    return measured(std::move(method), {result.shiftSigma, result.turnSigma, 0.0});
+    return measured(std::move(method), {result.shiftSigma, result.turnSigma, 0.0, result.tipSigma});
 }
 
 template <typename Place> void take(Registration& result, Place&& place) {
@@ -74,6 +101,7 @@ template <typename Place> void take(Registration& result, Place&& place) {
     result.points = std::move(place.points);
     result.turnSigma = place.turnSigma;
     result.shiftSigma = place.shiftSigma;
+    result.tipSigma = place.tipSigma;
     result.warnings = std::move(place.warnings);
 }
 
@@ -130,7 +158,7 @@ void solveDots(const DotCapture& capture, const CaptureFault* undo, const Progre
     const Installation& room = result.installation;
     const glm::dvec3 tip = withoutFault(glm::dvec3(room.pointerTip), undo);
     TrackerPlace place =
-        placeTracker(rowsOf(capture.dots, room, tip, capture.tableHeight, undo), {tip, capture.tipSigma}, progress);
+        placeTracker(rowsOf(capture.dots, room, tip, capture.tableHeight, undo), tipOf(room, tip), progress);
     const Figures figures = place.figures;
     take(result, std::move(place));
     result.fresh =
@@ -204,8 +232,8 @@ void judgeDevice(DevicePlace place, const std::vector<TouchedLandmark>& fresh, c
 void solveLandmarks(const LandmarkCapture& capture, const CaptureFault* undo, const Progress& progress,
                     Registration& result) {
     const glm::dvec3 tip = withoutFault(glm::dvec3(result.installation.pointerTip), undo);
-    judgeDevice(placeDevice(rowsOf(capture.touches, tip, undo), {tip, capture.tipSigma}, progress), capture.fresh, undo,
-                "touched points, " + std::to_string(capture.touches.size()), result);
+    judgeDevice(placeDevice(rowsOf(capture.touches, tip, undo), tipOf(result.installation, tip), progress),
+                capture.fresh, undo, "touched points, " + std::to_string(capture.touches.size()), result);
 }
 
 /// Where the device lies as far as is known.
@@ -234,12 +262,13 @@ void solveSurface(const SurfaceCapture& capture, const CaptureFault* undo, const
 void solveEye(const EyeCapture& capture, const CaptureFault* undo, const Progress& progress, Registration& result) {
     Figures figures = figuresIn(result.installation);
     figures.tip = withoutFault(figures.tip, undo);
-    EyePlace place =
-        placeEye(rowsOf(capture.alignments, figures.tip, undo), figures.worldFromTracker, figures.tip, progress);
+    EyePlace place = placeEye(rowsOf(capture.alignments, figures.tip, undo), figures.worldFromTracker,
+                              sightBaseOf(result.installation, figures.tip), progress);
     figures.eyeFromHead = place.eyeFromHead;
     result.rms = place.rms;
     result.points = std::move(place.points);
     result.shiftSigma = glm::length(place.sigma);
+    result.tipSigma = place.tipSigma;
     result.warnings = std::move(place.warnings);
     result.fresh = checkFresh(errorsOf(rowsOf(capture.fresh, figures.tip, undo), figures), kFreshEye);
     result.installation.eyeFromHead = glm::vec3(figures.eyeFromHead);
@@ -274,6 +303,7 @@ void solveJointly(const JointCapture& capture, const Progress& progress, Registr
     const registration::Refined refined = registration::refine(rows, start, {true, true, true, true}, progress);
     result.turnSigma = refined.sigmas.trackerTurn;
     result.shiftSigma = refined.sigmas.trackerShift;
+    result.tipSigma = refined.sigmas.trackerTip;
     for (const auto& errors :
          {errorsOf(dots, refined.figures), errorsOf(landmarks, refined.figures), errorsOf(sights, refined.figures)})
         result.points.insert(result.points.end(), errors.begin(), errors.end());
@@ -288,10 +318,11 @@ void solveJointly(const JointCapture& capture, const Progress& progress, Registr
     const char* const method = "all that was touched and aimed at, together";
     const registration::Sigmas& sigmas = refined.sigmas;
     Installation::Origins& origins = result.installation.origins;
-    origins.tracker = measured(method, {sigmas.trackerShift, sigmas.trackerTurn, 0.0});
-    origins.pointer = measured(method, {glm::length(sigmas.tip), 0.0, 0.0});
-    origins.deviceBody = measured(method, {sigmas.deviceShift, sigmas.deviceTurn, 0.0});
-    origins.eyeOffset = measured(method, {glm::length(sigmas.eye), 0.0, 0.0});
+    // The pointer first: by their dates the others are known to share its tip.
+    origins.pointer = measured(method, {glm::length(sigmas.tip), 0.0, 0.0, 0.0});
+    origins.tracker = measured(method, {sigmas.trackerShift, sigmas.trackerTurn, 0.0, sigmas.trackerTip});
+    origins.deviceBody = measured(method, {sigmas.deviceShift, sigmas.deviceTurn, 0.0, sigmas.deviceTip});
+    origins.eyeOffset = measured(method, {glm::length(sigmas.eye), 0.0, 0.0, sigmas.eyeTip});
     result.summary = "All together: " + worthOf(result) + ".";
 }
 

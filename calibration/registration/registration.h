@@ -23,11 +23,14 @@ struct Registration {
     std::optional<Finding> refusal;
     std::vector<Finding> warnings;
 
-    std::string summary;                      ///< one sentence with the figures that count
-    double rms = 0.0;                         ///< metres: the fit's own residual
-    std::vector<PointError> points;           ///< of the fit
-    FreshCheck fresh;                         ///< of points that it never saw
-    double turnSigma = 0.0, shiftSigma = 0.0; ///< what the fit thinks of itself: radians, metres
+    std::string summary;            ///< one sentence with the figures that count
+    double rms = 0.0;               ///< metres: the fit's own residual
+    std::vector<PointError> points; ///< of the fit
+    FreshCheck fresh;               ///< of points that it never saw
+    /// How well it is known, radians and metres: by the fit, with the noise of the tracker and what is open of tip and
+    /// tracker, as the origins of `believed` say.
+    double turnSigma = 0.0, shiftSigma = 0.0;
+    double tipSigma = 0.0; ///< metres: what of `shiftSigma` the pointer's tip makes
     [[nodiscard]] bool good() const { return !refusal && fresh.good(); }
 };
 
@@ -44,7 +47,6 @@ struct PointerCapture {
 struct DotCapture {
     std::vector<TouchedDot> dots, fresh;
     std::optional<double> tableHeight = 0.0; ///< of the plane on which they lie; empty: unknown
-    glm::dvec3 tipSigma{0.0002};             ///< metres: how well the installation's tip is known
 };
 [[nodiscard]] Registration registerTracker(const DotCapture& capture, const Installation& believed,
                                            const Progress& progress = {});
@@ -68,7 +70,6 @@ struct BoardCapture {
 /// Points of the device's model that a pointer touches.
 struct LandmarkCapture {
     std::vector<TouchedLandmark> touches, fresh;
-    glm::dvec3 tipSigma{0.0002}; ///< metres
 };
 [[nodiscard]] Registration registerDevice(const LandmarkCapture& capture, const Installation& believed,
                                           const Progress& progress = {});
