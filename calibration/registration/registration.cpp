@@ -9,6 +9,7 @@
 #include <glm/gtc/quaternion.hpp>
 
 #include "calibration/registration/hand_eye.h"
+#include "calibration/registration/landmarks.h"
 #include "calibration/registration/pivot.h"
 #include "calibration/registration/refusing.h"
 #include "calibration/registration/surface_fit.h"
@@ -30,8 +31,12 @@ constexpr double kFreshTip = 0.0015, kFreshTracker = 0.0025, kFreshBoard = 0.006
 // How well a tip is known along each axis, metres: one that was measured but not said how well, and one that was typed
 // in. A pivot believes too much of itself where neighbouring poses err alike for long.
 constexpr double kUsualTip = 0.0002, kEnteredTip = 0.001, kLeastTip = 5e-5;
-constexpr double kTable = 0.004;       ///< metres over the table from which on a point may be of the device
-constexpr std::size_t kFreshShare = 5; ///< of a board's recording, one in so many is kept for the fresh points
+constexpr double kRecordedSigma =
+    0.0005;                           ///< metres: how well a point is met by a tip that rests on it, tracker and all
+constexpr std::size_t kHeldShare = 4; ///< of recorded touches, one in so many is a check point
+constexpr std::size_t kFewestRecorded = 7; // four to solve by, and three
+constexpr double kTable = 0.004;           ///< metres over the table from which on a point may be of the device
+constexpr std::size_t kFreshShare = 5;     ///< of a board's recording, one in so many is kept for the fresh points
 constexpr std::size_t kFreshBoards = 8;
 
 std::string mm(double metres) { return number(1000.0 * metres, 2) + " mm"; }
@@ -85,8 +90,8 @@ template <typename Work> Registration orRefusal(const Installation& believed, co
 }
 
 std::string worthOf(const Registration& result) {
-    return std::to_string(result.fresh.points.size()) + " fresh points lie " + mm(result.fresh.rms) +
-           " off (RMS), the worst " + mm(result.fresh.worst);
+    return std::to_string(result.fresh.points.size()) + " check points that the fit never saw lie " +
+           mm(result.fresh.rms) + " off (RMS), the worst " + mm(result.fresh.worst);
 }
 
 Origin measured(std::string method, const MeasuredSigma& sigma) {
@@ -236,6 +241,41 @@ void solveLandmarks(const LandmarkCapture& capture, const CaptureFault* undo, co
                 capture.fresh, undo, "touched points, " + std::to_string(capture.touches.size()), result);
 }
 
+/// Which of so many points are held out: spread evenly, by nothing but their order.
+std::vector<bool> heldOutOf(std::size_t count) {
+    const std::size_t held = std::max(FreshCheck::kFewest, count / kHeldShare);
+    std::vector<bool> out(count, false);
+    for (std::size_t k = 0; k < held; ++k) out[(2 * k + 1) * count / (2 * held)] = true;
+    return out;
+}
+
+void solveRecorded(const RecordedLandmarks& capture, const Progress& progress, Registration& result) {
+    const glm::dvec3 tip(result.installation.pointerTip);
+    LandmarkFit found = fitLandmarks(capture.pointer, capture.body, capture.model, tip);
+    std::erase_if(found.points, [](const Landmark& point) { return !point.touched; });
+    const std::size_t count = found.points.size();
+    if (count < kFewestRecorded)
+        registration::refuse(Cause::tooFewPoints, "touched points",
+                             std::to_string(count) + " points are too few to hold out three of them as check points",
+                             "name and touch seven or more");
+    const std::vector<bool> isHeldOut = heldOutOf(count);
+    LandmarkRows fitted, held;
+    for (std::size_t i = 0; i < count; ++i) {
+        const Landmark& point = found.points[i];
+        LandmarkRows& rows = isHeldOut[i] ? held : fitted;
+        rows.rows.push_back({point.pointer, point.onModel, kRecordedSigma});
+        rows.outward.emplace_back();
+        rows.names.push_back(point.name);
+    }
+    DevicePlace place = placeDevice(fitted, tipOf(result.installation, tip), progress);
+    Figures figures = place.figures;
+    figures.tip = tip;
+    take(result, std::move(place));
+    result.warnings.insert(result.warnings.end(), found.warnings.begin(), found.warnings.end());
+    result.fresh = checkFresh(errorsOf(held, figures), kFreshDevice);
+    keepDevice(result, figures.bodyFromDevice, "recorded touches, " + std::to_string(fitted.rows.size()) + " points");
+}
+
 /// Where the device lies as far as is known.
 Pose startOf(const SurfaceCapture& capture, const Installation& room, const Figures& figures) {
     if (!room.origins.deviceBody.isCalibrated() || capture.body.poses.empty()) return poseOf(room.worldFromDevice);
@@ -375,6 +415,11 @@ Registration registerDevice(const LandmarkCapture& capture, const Installation& 
             return one;
         });
     });
+}
+
+Registration registerDevice(const RecordedLandmarks& capture, const Installation& believed, const Progress& progress) {
+    progress.report(0.0, "finding which point is which");
+    return orRefusal(believed, [&](Registration& result) { solveRecorded(capture, progress, result); });
 }
 
 Registration registerDevice(const SurfaceCapture& capture, const Installation& believed, const Progress& progress) {
