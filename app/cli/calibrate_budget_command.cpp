@@ -8,6 +8,7 @@
 #include "app/cli/project_frame.h"
 #include "calibration/budget/error_budget.h"
 #include "core/base/error.h"
+#include "core/loop/pose_stream.h"
 #include "core/show/project_contents.h"
 
 namespace lumorph::cli {
@@ -34,6 +35,8 @@ const char* titleOf(BudgetPart part) {
         return "servos";
     case BudgetPart::delay:
         return "delay not known";
+    case BudgetPart::pointer:
+        return "pointer's tip, in all";
     case BudgetPart::prediction:
         break;
     }
@@ -91,6 +94,8 @@ nlohmann::json budgetJson(const ErrorBudget& budget, const BudgetArguments& argu
             {"trackerPlaced", budget.isTrackerPlaced},
             {"simulated", budget.isSimulated},
             {"places", budget.places},
+            {"lookAheadCutMs", 1e3 * budget.cutSeconds},
+            {"lookAheadCutMm", 1e3 * budget.cutMetres},
             {"advice", advice}};
 }
 
@@ -100,6 +105,10 @@ void printBudget(const ErrorBudget& budget, const BudgetArguments& arguments) {
         std::printf("  %-23s %7.2f mm %4.0f %%  %s\n", titleOf(item.part), 1e3 * item.metres, 100.0 * item.share,
                     wordOf(item.source));
     std::printf("  %-23s %7.2f mm\n", "all together", 1e3 * budget.total);
+    if (budget.cutSeconds > 0.0)
+        std::printf(
+            "Poses are predicted by at most %.0f ms; %.0f ms more, %.2f mm at this speed, are not compensated.\n",
+            1e3 * PoseStream::kFarthestAhead, 1e3 * budget.cutSeconds, 1e3 * budget.cutMetres);
     if (!budget.isTrackerPlaced)
         std::printf("Nobody has said where the tracker's world lies; this counts as if it had been laid in by a "
                     "ruler.\n");

@@ -75,7 +75,7 @@ void print(const LightCalibration& result) {
 nlohmann::json delayJson(const MeasuredDelay& delay) {
     return {{"ms", 1e3 * delay.seconds},
             {"sigmaMs", 1e3 * delay.sigma},
-            {"halvesDifferMs", 1e3 * delay.halvesDiffer},
+            {"halvesDifferMs", delay.halvesDiffer ? nlohmann::json(1e3 * *delay.halvesDiffer) : nlohmann::json()},
             {"events", delay.events}};
 }
 
@@ -104,7 +104,9 @@ nlohmann::json figuresOf(const MeasuredDelays& delays) {
 }
 
 void printDelay(const char* name, const MeasuredDelay& delay) {
-    std::printf("  %-22s %6.1f +- %.1f ms\n", name, 1e3 * delay.seconds, 1e3 * delay.sigma);
+    std::printf("  %-22s %6.1f +- %.1f ms", name, 1e3 * delay.seconds, 1e3 * delay.sigma);
+    delay.halvesDiffer ? std::printf(", halves differ by %.1f ms\n", 1e3 * *delay.halvesDiffer)
+                       : std::printf(", halves differ by -\n");
 }
 
 void print(const MeasuredDelays& delays) {

@@ -37,6 +37,11 @@ struct ErrorBudget {
     std::vector<BudgetAdvice> advice; ///< a tracker that was never placed, then what helps most; less than a
                                       ///< twentieth is left out
     std::size_t places = 0;           ///< of the device that count
+    /// By which frames look less far ahead than they should, because poses are predicted by
+    /// `PoseStream::kFarthestAhead` at most after they were measured; 0 where that suffices. It is counted in what
+    /// prediction leaves.
+    double cutSeconds = 0.0;
+    double cutMetres = 0.0; ///< that the hand goes meanwhile
 
     [[nodiscard]] const BudgetItem& itemOf(BudgetPart part) const { return items[static_cast<std::size_t>(part)]; }
 };

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "core/loop/pose_stream.h"
+#include "core/loop/viewer_stage.h"
 #include "core/scene/measured_sigma.h"
 
 namespace lumorph {
@@ -33,6 +33,13 @@ PoseError alongAxes(const MeasuredSigma& sigma) {
     return {sigma.metres / std::numbers::sqrt3, sigma.radians / std::numbers::sqrt3};
 }
 
+ErrorSource sourceOf(const Origin& origin, bool isTold) {
+    return !origin.isCalibrated()                 ? ErrorSource::assumed
+           : origin.way == Origin::Way::simulated ? ErrorSource::simulated
+           : isTold                               ? ErrorSource::told
+                                                  : ErrorSource::measured;
+}
+
 /// Writes what is known of one part, and how.
 class Writer {
 public:
@@ -43,6 +50,17 @@ public:
         const PoseError said = alongAxes(sigmaOf(origin));
         error = choose(part, origin, said.metres > 0.0 && said.radians > 0.0, said, measured, assumed);
     }
+    /// What the tip puts into a part leaves the part's own error.
+    void share(BudgetPart part, const Origin& origin, const Origin& pointer, double& error, double& tip) {
+        // One that was measured before the tip was measured again has an error of the tip of its own.
+        if (!origin.isCalibrated() || origin.date < pointer.date) return;
+        tip = std::min(sigmaOf(origin).tipMetres / std::numbers::sqrt3, error);
+        error = std::sqrt(error * error - tip * tip);
+        if (!(tip > 0.0)) return;
+        ErrorSource& all = errors_.sources[static_cast<std::size_t>(BudgetPart::pointer)];
+        const ErrorSource source = errors_.sourceOf(part);
+        all = all == ErrorSource::worked ? source : std::max(all, source);
+    }
     void number(BudgetPart part, const Origin& origin, double& error, double said, double measured, double assumed) {
         error = choose(part, origin, said > 0.0, said, measured, assumed);
     }
@@ -51,11 +69,10 @@ private:
     template <typename Value>
     Value choose(BudgetPart part, const Origin& origin, bool isTold, const Value& said, const Value& measured,
                  const Value& assumed) {
-        ErrorSource& source = errors_.sources[static_cast<std::size_t>(part)];
-        source = !origin.isCalibrated()                 ? ErrorSource::assumed
-                 : origin.way == Origin::Way::simulated ? ErrorSource::simulated
-                 : isTold                               ? ErrorSource::told
-                                                        : ErrorSource::measured;
+        const ErrorSource source = sourceOf(origin, isTold);
+        // The sources are in the order of how much they are worth: what is worst of a part is said of it.
+        ErrorSource& all = errors_.sources[static_cast<std::size_t>(part)];
+        all = std::max(all, source);
         return source == ErrorSource::assumed ? assumed : isTold ? said : measured;
     }
 
@@ -78,18 +95,23 @@ double usualStroke(const Actuator& actuator, double at, const LabErrors& usual) 
     return std::sqrt(bow * bow + wave * wave + play * play);
 }
 
-/// Second moment of a delay around what is believed: uniform within `share` of `mean`.
+/// Second moment of a delay around what is compensated: uniform within a share of its mean. Without prediction nothing
+/// is, not even the age of poses.
 double usualDelay(const Installation& room, const LabErrors& usual) {
     const auto variance = [](double mean, double share) { return std::pow(mean * share, 2) / 3.0; };
-    const double off = usual.lightSeconds - room.predictionSeconds + usual.trackerSeconds - room.trackerSeconds;
-    return std::sqrt(off * off + variance(usual.lightSeconds, 0.3) + variance(usual.trackerSeconds, 0.4));
+    // Of an age that was measured no more than the measurement's error is open.
+    const bool isAgeKnown = room.origins.delays.isCalibrated() && room.trackerSeconds > 0.0;
+    const double age = isAgeKnown ? room.trackerSeconds : usual.trackerSeconds;
+    const double off = usual.lightSeconds + age - lookAhead(room, 0.0);
+    return std::sqrt(off * off + variance(usual.lightSeconds, 0.3) +
+                     (isAgeKnown ? std::pow(sigmaOf(room.origins.delays).seconds, 2) : variance(age, 0.4)));
 }
 
 } // namespace
 
 const char* keyOf(BudgetPart part) noexcept {
-    static constexpr std::array<const char*, kBudgetParts> kKeys{"projector", "tracker", "device",    "eye",
-                                                                 "servos",    "delay",   "prediction"};
+    static constexpr std::array<const char*, kBudgetParts> kKeys{"projector", "tracker", "device",     "eye",
+                                                                 "servos",    "delay",   "prediction", "pointer"};
     return kKeys[static_cast<std::size_t>(part)];
 }
 
@@ -98,14 +120,26 @@ RoomErrors errorsOf(const Installation& room, const Rig& rig, const std::vector<
     RoomErrors errors;
     Writer write(errors);
     const Installation::Origins& origins = room.origins;
-    const Origin light = room.projectors.empty() ? Origin{} : lightOrigin(room.projectors.front());
-    write.number(BudgetPart::projector, light, errors.light, sigmaOf(light).metres, usually::kLight, kAimedLight);
+    errors.sources[static_cast<std::size_t>(BudgetPart::pointer)] = ErrorSource::worked; // until it is in anything
+    for (const InstalledProjector& projector : room.projectors) {
+        BeamError& light = errors.lights.emplace_back();
+        if (!projector.enabled) continue;
+        const Origin origin = lightOrigin(projector);
+        const double said = sigmaOf(origin).metres;
+        light.source = sourceOf(origin, said > 0.0);
+        write.number(BudgetPart::projector, origin, light.metres, said, usually::kLight, kAimedLight);
+    }
+    if (std::ranges::none_of(room.projectors, &InstalledProjector::enabled))
+        errors.sources[static_cast<std::size_t>(BudgetPart::projector)] = ErrorSource::assumed;
     write.pose(BudgetPart::tracker, origins.tracker, errors.tracker, kEnteredTracker, usually::kTracker);
     errors.isTrackerPlaced = origins.tracker.way != Origin::Way::assumed;
     write.pose(BudgetPart::device, origins.deviceBody, errors.device,
                {1e-3 * usual.deviceMillimetres, usual.deviceDegrees * kDegree}, usually::kDevice);
     write.number(BudgetPart::eye, origins.eyeOffset, errors.eye,
                  sigmaOf(origins.eyeOffset).metres / std::numbers::sqrt3, usually::kEye, 1e-3 * usual.eyeMillimetres);
+    write.share(BudgetPart::tracker, origins.tracker, origins.pointer, errors.tracker.metres, errors.tip.tracker);
+    write.share(BudgetPart::device, origins.deviceBody, origins.pointer, errors.device.metres, errors.tip.device);
+    write.share(BudgetPart::eye, origins.eyeOffset, origins.pointer, errors.eye, errors.tip.eye);
     for (std::size_t i = 0; i < rig.actuatorCount(); ++i) {
         const Actuator& actuator = rig.actuators()[i];
         const auto servo = std::ranges::find(room.servos, actuator.name, &MeasuredServo::actuator);
@@ -117,13 +151,12 @@ RoomErrors errorsOf(const Installation& room, const Rig& rig, const std::vector<
         write.number(BudgetPart::servos, origin, errors.strokes.emplace_back(), sigmaOf(origin).radians / whole,
                      usually::kServo / whole, usualStroke(actuator, at, usual));
     }
-    const bool predicts = room.predictionSeconds > 0.0;
     // Without prediction the whole delay is an error.
-    const Origin delays = predicts ? origins.delays : Origin{};
+    const Origin delays = room.predictionSeconds > 0.0 ? origins.delays : Origin{};
     write.number(BudgetPart::delay, delays, errors.delay, sigmaOf(delays).seconds, usually::kDelay,
                  usualDelay(room, usual));
     errors.noise = {1e-3 * usual.trackerNoiseMillimetres, usual.trackerNoiseDegrees * kDegree};
-    errors.ahead = predicts ? std::min(room.predictionSeconds + room.trackerSeconds, PoseStream::kFarthestAhead) : 0.0;
+    errors.ahead = lookAhead(room, 0.0);
     errors.sources[static_cast<std::size_t>(BudgetPart::prediction)] = ErrorSource::worked;
     return errors;
 }
@@ -137,7 +170,12 @@ RoomErrors measuredAgain(RoomErrors errors, const Rig& rig, BudgetPart part) {
     };
     switch (part) {
     case BudgetPart::projector:
-        number(errors.light, usually::kLight);
+        for (BeamError& light : errors.lights) {
+            // Where some were not measured, it is they that are measured.
+            if (!(light.metres > 0.0) || (isNew && light.source != ErrorSource::assumed)) continue;
+            number(light.metres, usually::kLight);
+            if (isNew || light.source == ErrorSource::simulated) light.source = ErrorSource::measured;
+        }
         break;
     case BudgetPart::tracker:
         pose(errors.tracker, usually::kTracker);
@@ -150,11 +188,16 @@ RoomErrors measuredAgain(RoomErrors errors, const Rig& rig, BudgetPart part) {
         number(errors.eye, usually::kEye);
         break;
     case BudgetPart::servos:
-        for (std::size_t i = 0; i < errors.strokes.size(); ++i)
-            number(errors.strokes[i], usually::kServo / (degreesOfStroke(rig.actuators()[i]) * kDegree));
+        for (std::size_t i = 0; i < errors.strokes.size(); ++i) {
+            const double usual = usually::kServo / (degreesOfStroke(rig.actuators()[i]) * kDegree);
+            number(errors.strokes[i], std::min(errors.strokes[i], usual));
+        }
         break;
     case BudgetPart::delay:
         number(errors.delay, usually::kDelay);
+        break;
+    case BudgetPart::pointer:
+        for (double* tip : {&errors.tip.tracker, &errors.tip.device, &errors.tip.eye}) *tip *= 0.5;
         break;
     case BudgetPart::prediction:
         return errors;

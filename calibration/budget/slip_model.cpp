@@ -144,6 +144,7 @@ SlipModel slipModelOf(const Rig& rig, const Installation& room, const SlipView& 
     if (model.points.empty())
         throw InvalidInput("device in the room", "no place of it is both lit by a projector and seen by the viewer",
                            "lay it into the light, before the viewer");
+    model.lights.resize(room.projectors.size());
     const Vector3d device = vectorOf(glm::dvec3(room.worldFromDevice[3])), middle = Vector3d::Zero();
     for (const SlipPoint& point : model.points) {
         const Slip slip(point, room, view.floats);
@@ -153,7 +154,11 @@ SlipModel slipModelOf(const Rig& rig, const Installation& room, const SlipView& 
         add(model.trackerShift, slip.ofAllShift());
         add(model.trackerTurn, slip.ofAllTurn(middle));
         add(model.eye, slip.ofEye());
-        model.light += slip.ofLight();
+        const auto product = [](const Matrix3d& a, const Matrix3d& b) { return a.cwiseProduct(b).sum(); };
+        model.trackerWithDevice += product(slip.ofAllShift(), slip.ofShift());
+        model.trackerWithEye += product(slip.ofAllShift(), slip.ofEye());
+        model.deviceWithEye += product(slip.ofShift(), slip.ofEye());
+        model.lights[point.projector] += slip.ofLight();
         const std::vector<glm::dvec3> velocities = surface.velocities(point.at);
         model.strokes.resize(velocities.size());
         for (std::size_t i = 0; i < velocities.size(); ++i)
@@ -162,7 +167,8 @@ SlipModel slipModelOf(const Rig& rig, const Installation& room, const SlipView& 
     const double share = 1.0 / static_cast<double>(model.points.size());
     for (Matrix3d* sum : {&model.deviceShift, &model.deviceTurn, &model.trackerShift, &model.trackerTurn, &model.eye})
         *sum *= share;
-    model.light *= share;
+    for (double* product : {&model.trackerWithDevice, &model.trackerWithEye, &model.deviceWithEye}) *product *= share;
+    for (double& light : model.lights) light *= share;
     for (double& stroke : model.strokes) stroke *= share;
     return model;
 }

@@ -32,10 +32,14 @@ struct SlipPoint {
 /// covariance). A plain value.
 struct SlipModel {
     std::vector<SlipPoint> points;
-    double light = 0.0; ///< of light that falls one metre beside, in any direction across the beam
+    /// One a projector of the room: of its light alone that falls one metre beside, in any direction across the beam. A
+    /// projector that lights nothing of the device has none.
+    std::vector<double> lights;
     Eigen::Matrix3d trackerShift = Eigen::Matrix3d::Zero(), trackerTurn = Eigen::Matrix3d::Zero();
     Eigen::Matrix3d deviceShift = Eigen::Matrix3d::Zero(), deviceTurn = Eigen::Matrix3d::Zero();
     Eigen::Matrix3d eye = Eigen::Matrix3d::Zero();
+    /// Mean products of the slips by a shift of one and the same of the other, the axes added up.
+    double trackerWithDevice = 0.0, trackerWithEye = 0.0, deviceWithEye = 0.0;
     std::vector<double> strokes; ///< one an actuator: of a whole stroke
 };
 

@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -12,10 +13,11 @@ namespace lumorph {
 /// A delay as it was measured.
 struct MeasuredDelay {
     double seconds = 0.0;
-    double sigma = 0.0;        ///< standard deviation, seconds, by leaving parts of the recording out
-    double residual = 0.0;     ///< root mean square of what the delay leaves unexplained, in the unit of what was seen
-    double halvesDiffer = 0.0; ///< seconds by which both halves of the recording disagree
-    int events = 0;            ///< flashes, steps or pictures that it was made of
+    double sigma = 0.0;    ///< standard deviation, seconds, by leaving parts of the recording out
+    double residual = 0.0; ///< root mean square of what the delay leaves unexplained, in the unit of what was seen
+    /// Seconds by which both halves of the recording disagree; empty where one of them alone tells nothing.
+    std::optional<double> halvesDiffer;
+    int events = 0; ///< flashes, steps or pictures that it was made of
     std::vector<Finding> warnings;
 };
 

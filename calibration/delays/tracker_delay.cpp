@@ -60,7 +60,7 @@ PoseTrack smoothed(const PoseTrack& track) {
 }
 
 /// Half of the recording may lack a motion that the whole has: nothing is known then.
-double halvesDiffer(const PoseTrack& tracked, const PoseTrack& seen, const Progress& progress) {
+std::optional<double> halvesDiffer(const PoseTrack& tracked, const PoseTrack& seen, const Progress& progress) {
     PoseTrack early = seen, late = seen;
     const auto middle = static_cast<std::ptrdiff_t>(seen.poses.size() / 2);
     early.poses.erase(early.poses.begin() + middle, early.poses.end());
@@ -69,7 +69,7 @@ double halvesDiffer(const PoseTrack& tracked, const PoseTrack& seen, const Progr
         return std::abs(solveHandEye(tracked, early, progress).timeOffset -
                         solveHandEye(tracked, late, progress).timeOffset);
     } catch (const CaptureRefused&) {
-        return 0.0;
+        return std::nullopt;
     }
 }
 
@@ -104,7 +104,7 @@ MeasuredDelay solveTrackerDelay(const PoseTrack& tracker, const PoseTrack& camer
     delay.events = static_cast<int>(joined.poses);
     delay.warnings = joined.warnings;
     delay.halvesDiffer = halvesDiffer(tracked, seen, progress);
-    delay.sigma = std::max(joined.offsetSigma, 0.5 * delay.halvesDiffer);
+    delay.sigma = std::max(joined.offsetSigma, 0.5 * delay.halvesDiffer.value_or(0.0));
     return delay;
 }
 

@@ -153,7 +153,7 @@ DotCapture captureDotsInLab(const Rig& rig, const Installation& believed, const 
     DotCapture capture;
     for (std::size_t i = 0; i < planned.size(); ++i) {
         const bool fits = i < options.dots;
-        const std::string name = fits ? numbered("dot", i) : numbered("fresh dot", i - options.dots);
+        const std::string name = fits ? numbered("dot", i) : numbered("check dot", i - options.dots);
         const glm::dvec3 place = onTable(firstProjector(truth), planned[i].pixel);
         (fits ? capture.dots : capture.fresh).push_back({0, planned[i].pixel, lab.touchDot(name, place)});
     }
@@ -167,7 +167,7 @@ LandmarkCapture captureLandmarksInLab(const Rig& rig, const Installation& truth,
     TrackerLab lab = labOf(truth, seed, Step::landmarks, options);
     LandmarkCapture capture;
     capture.touches = touchAll(lab, planned, 0, options.landmarks, "point");
-    capture.fresh = touchAll(lab, planned, options.landmarks, count, "fresh point");
+    capture.fresh = touchAll(lab, planned, options.landmarks, count, "check point");
     return capture;
 }
 
@@ -181,7 +181,7 @@ LitDeviceCapture captureLitDeviceInLab(const Rig& rig, const Installation& truth
                                  lensOf(projector.camera, "projector of the lab"), seedOf(seed, Step::surface));
     TrackerLab lab = labOf(truth, seed, Step::surface, options);
     capture.body = lab.recordDevice(3.0);
-    capture.fresh = touchAll(lab, planLandmarks(rig, options.fresh), 0, options.fresh, "fresh point");
+    capture.fresh = touchAll(lab, planLandmarks(rig, options.fresh), 0, options.fresh, "check point");
     return capture;
 }
 
@@ -218,7 +218,7 @@ EyeCapture captureEyeInLab(const Rig& rig, const Installation& believed, const I
     EyeCapture capture;
     for (std::size_t i = 0; i < marks.size(); ++i) {
         const bool fits = i < options.alignments;
-        const std::string name = fits ? numbered("alignment", i) : numbered("fresh alignment", i - options.alignments);
+        const std::string name = fits ? numbered("alignment", i) : numbered("check alignment", i - options.alignments);
         const glm::dvec3 eye = glm::dvec3(truth.eye) + glm::dvec3(moves(engine), moves(engine), moves(engine));
         (fits ? capture.alignments : capture.fresh).push_back(lab.align(name, marks[i].place, eye));
     }

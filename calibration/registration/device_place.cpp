@@ -95,7 +95,7 @@ LandmarkRows rowsOf(std::span<const TouchedLandmark> touches, const glm::dvec3& 
             registration::refuse(Cause::trackerLost, landmark.touch.name.c_str(), "the device's body was not recorded",
                                  "track the device while its points are touched");
         const Rest rest = restOf(withoutFault(landmark.touch, undo), tip);
-        all.rows.push_back({rest.pointer, landmark.onModel, kLandmarkSigma});
+        all.rows.push_back({rest.pointer, landmark.onModel, std::hypot(kLandmarkSigma, noiseOf(rest))});
         all.outward.push_back(landmark.outward);
         all.names.push_back(landmark.touch.name);
         all.warnings.insert(all.warnings.end(), rest.warnings.begin(), rest.warnings.end());
@@ -122,6 +122,7 @@ DevicePlace placeDevice(const LandmarkRows& touches, const registration::TipRow&
     place.figures = refined.figures;
     place.turnSigma = refined.sigmas.deviceTurn;
     place.shiftSigma = refined.sigmas.deviceShift;
+    place.tipSigma = refined.sigmas.deviceTip;
     place.warnings = touches.warnings;
     judgeTouches(place, touches);
     return place;

@@ -25,6 +25,7 @@ struct DevicePlace {
     double rms = 0.0;              ///< metres
     std::vector<PointError> points;
     double turnSigma = 0.0, shiftSigma = 0.0; ///< radians; metres, in the middle of the points
+    double tipSigma = 0.0;                    ///< metres: what of `shiftSigma` the pointer's tip makes
     std::vector<Finding> warnings;
 };
 

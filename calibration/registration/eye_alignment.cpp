@@ -4,7 +4,9 @@
 #include <cmath>
 
 #include <Eigen/Dense>
+#include <glm/exponential.hpp>
 #include <glm/geometric.hpp>
+#include <glm/gtc/quaternion.hpp>
 
 #include "calibration/registration/refusing.h"
 #include "core/base/error.h"
@@ -108,6 +110,49 @@ void judgeEye(EyePlace& place, const SightRows& alignments, const registration::
                              "align more marks, and turn and tilt the head between them");
 }
 
+/// Where the eye comes to lie with another tip or tracker.
+glm::dvec3 eyeWith(const SightRows& alignments, const registration::Figures& figures) {
+    return registration::refine({{}, {}, alignments.rows, {}}, figures, {false, false, false, true})
+        .figures.eyeFromHead;
+}
+
+/// Adds what errors of tip and tracker make of the eye, each by a small step of its own.
+void carry(EyePlace& place, const SightRows& alignments, const registration::Figures& figures, const SightBase& base) {
+    glm::dvec3 squares = place.sigma * place.sigma;
+    double ofTip = 0.0;
+    const auto moved = [&](const registration::Figures& other) {
+        return eyeWith(alignments, other) - place.eyeFromHead;
+    };
+    // How the pointer was held in the room, in the mean.
+    glm::dmat3 held(0.0);
+    for (const registration::SightRow& row : alignments.rows)
+        held += glm::mat3_cast(figures.worldFromTracker.rotation * row.head.rotation * row.pointer.rotation) /
+                double(alignments.rows.size());
+    for (int axis = 0; axis < 3; ++axis) {
+        const auto along = [axis](double size) {
+            glm::dvec3 way(0.0);
+            way[axis] = size;
+            return way;
+        };
+        registration::Figures other = figures;
+        const glm::dvec3 tip = along(base.tip.sigma[axis]);
+        other.tip += tip;
+        other.worldFromTracker.position -= base.tipShare * (held * tip);
+        const glm::dvec3 byTip = moved(other);
+        squares += byTip * byTip;
+        ofTip += glm::dot(byTip, byTip);
+        other = figures;
+        other.worldFromTracker.position += along(base.trackerShift);
+        const glm::dvec3 byShift = moved(other);
+        other = figures;
+        other.worldFromTracker = Pose{{}, rotationOfTurn(along(base.trackerTurn))} * figures.worldFromTracker;
+        const glm::dvec3 byTurn = moved(other);
+        squares += byShift * byShift + byTurn * byTurn;
+    }
+    place.sigma = glm::sqrt(squares);
+    place.tipSigma = std::sqrt(ofTip);
+}
+
 } // namespace
 
 SightRows rowsOf(std::span<const Alignment> alignments, const glm::dvec3& tip, const CaptureFault* undo) {
@@ -121,6 +166,7 @@ SightRows rowsOf(std::span<const Alignment> alignments, const glm::dvec3& tip, c
         row.pointer = rest.pointer;
         row.head = rest.body;
         row.mark = alignment.mark;
+        row.tipSigma = std::hypot(row.tipSigma, noiseOf(rest));
         all.rows.push_back(row);
         all.names.push_back(alignment.touch.name);
         all.warnings.insert(all.warnings.end(), rest.warnings.begin(), rest.warnings.end());
@@ -128,8 +174,9 @@ SightRows rowsOf(std::span<const Alignment> alignments, const glm::dvec3& tip, c
     return all;
 }
 
-EyePlace placeEye(const SightRows& alignments, const Pose& worldFromTracker, const glm::dvec3& tip,
+EyePlace placeEye(const SightRows& alignments, const Pose& worldFromTracker, const SightBase& base,
                   const Progress& progress) {
+    const glm::dvec3& tip = base.tip.tip;
     if (alignments.rows.size() < kFewestAlignments)
         registration::refuse(Cause::tooFewPoints, kAlignments,
                              std::to_string(alignments.rows.size()) + " alignments are too few", "aim at eight marks");
@@ -143,6 +190,7 @@ EyePlace placeEye(const SightRows& alignments, const Pose& worldFromTracker, con
     place.sigma = refined.sigmas.eye;
     place.warnings = alignments.warnings;
     judgeEye(place, alignments, refined.figures);
+    carry(place, alignments, refined.figures, base);
     return place;
 }
 

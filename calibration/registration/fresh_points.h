@@ -14,7 +14,8 @@ struct PointError {
 };
 [[nodiscard]] double rmsOf(const std::vector<PointError>& errors);
 
-/// Points that a fit never saw, against it. Residuals flatter: a fit bends towards its own points, wrong ones too.
+/// Check points, which a fit never saw, against it. Residuals flatter: a fit bends towards its own points, wrong ones
+/// too.
 struct FreshCheck {
     std::vector<PointError> points;
     double rms = 0.0, worst = 0.0; ///< metres

@@ -188,14 +188,17 @@ void explainByTurns(const std::vector<TimedPose>& seen, std::span<const glm::dve
 }
 
 LandmarkFit resultOf(const LandmarkMatch& match, const std::vector<NamedPoint>& model,
-                     std::span<const glm::dvec3> places, std::span<const glm::dvec3> points) {
+                     const std::vector<Touched>& touched, std::span<const glm::dvec3> points, const glm::dvec3& tip) {
+    const std::vector<glm::dvec3> places = placesOf(touched);
     LandmarkFit result;
     result.modelFromReference = match.fit.toFromFrom;
     result.rms = match.fit.rms;
     for (std::size_t m = 0; m < model.size(); ++m) {
-        Landmark landmark{model[m].name, match.placeOf[m].has_value(), {}, 0.0, 0.0};
+        Landmark landmark{model[m].name, match.placeOf[m].has_value(), {}, {}, points[m], 0.0, 0.0};
         if (landmark.touched) {
             landmark.touchedAt = places[*match.placeOf[m]];
+            const glm::dquat& held = touched[*match.placeOf[m]].pointer.rotation;
+            landmark.pointer = {landmark.touchedAt - held * tip, held};
             landmark.error = glm::distance(result.modelFromReference * landmark.touchedAt, points[m]);
             std::vector<glm::dvec3> from, to;
             for (std::size_t k = 0; k < model.size(); ++k)
@@ -286,7 +289,7 @@ LandmarkFit fitLandmarks(const PoseTrack& pointer, const std::optional<PoseTrack
         explainByTurns(seen, points, tip);
         explain(touchedPlaces(seen, tip, kWrongTipRests), points, tip);
     }
-    LandmarkFit result = resultOf(*match, model, places, points);
+    LandmarkFit result = resultOf(*match, model, touched, points, tip);
     warn(result, *match);
     warnOfTip(result, touched, *match, points, tip);
     for (const auto* track : {&pointer, reference ? &*reference : nullptr})

@@ -13,8 +13,11 @@ struct Landmark {
     std::string name;
     bool touched = false;
     glm::dvec3 touchedAt{0.0}; ///< in the reference's frame, metres
+    Pose pointer;              ///< likewise; the tip is at `touchedAt`
+    glm::dvec3 onModel{0.0};   ///< metres
     double error = 0.0;        ///< metres from where the fit has it
-    /// The same of the fit without this point: what it says of places that nobody touched.
+    /// Leave-one-out: the same of the fit to all the others. It flatters less than `error`, but each point had a say in
+    /// which place is which, and in the fits of all the others. What judges a registration is points that no fit saw.
     double leaveOneOut = 0.0;
 };
 

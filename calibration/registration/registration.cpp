@@ -2,12 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <utility>
 
 #include <glm/geometric.hpp>
 #include <glm/gtc/quaternion.hpp>
 
 #include "calibration/registration/hand_eye.h"
+#include "calibration/registration/landmarks.h"
 #include "calibration/registration/pivot.h"
 #include "calibration/registration/refusing.h"
 #include "calibration/registration/surface_fit.h"
@@ -26,8 +28,15 @@ using registration::TipRow;
 // figures are good for.
 constexpr double kFreshTip = 0.0015, kFreshTracker = 0.0025, kFreshBoard = 0.006, kFreshDevice = 0.002,
                  kFreshEye = 0.01;
-constexpr double kTable = 0.004;       ///< metres over the table from which on a point may be of the device
-constexpr std::size_t kFreshShare = 5; ///< of a board's recording, one in so many is kept for the fresh points
+// How well a tip is known along each axis, metres: one that was measured but not said how well, and one that was typed
+// in. A pivot believes too much of itself where neighbouring poses err alike for long.
+constexpr double kUsualTip = 0.0002, kEnteredTip = 0.001, kLeastTip = 5e-5;
+constexpr double kRecordedSigma =
+    0.0005;                           ///< metres: how well a point is met by a tip that rests on it, tracker and all
+constexpr std::size_t kHeldShare = 4; ///< of recorded touches, one in so many is a check point
+constexpr std::size_t kFewestRecorded = 7; // four to solve by, and three
+constexpr double kTable = 0.004;           ///< metres over the table from which on a point may be of the device
+constexpr std::size_t kFreshShare = 5;     ///< of a board's recording, one in so many is kept for the fresh points
 constexpr std::size_t kFreshBoards = 8;
 
 std::string mm(double metres) { return number(1000.0 * metres, 2) + " mm"; }
@@ -39,6 +48,29 @@ Pose poseOf(const glm::mat4& rigid) {
 Figures figuresIn(const Installation& room) {
     return {poseOf(room.worldFromTracker), glm::dvec3(room.pointerTip), poseOf(room.bodyFromDevice),
             glm::dvec3(room.eyeFromHead)};
+}
+
+/// The tip that is believed, and how well it is known along each axis.
+TipRow tipOf(const Installation& room, const glm::dvec3& tip) {
+    const Origin& origin = room.origins.pointer;
+    const double said = sigmaOf(origin).metres / std::numbers::sqrt3;
+    const double sigma = !origin.isCalibrated() ? kEnteredTip : said > 0.0 ? std::max(said, kLeastTip) : kUsualTip;
+    return {tip, glm::dvec3(sigma)};
+}
+
+/// How well tip and tracker are known for lines of sight. A tracker that was not measured has no sigma to carry.
+SightBase sightBaseOf(const Installation& room, const glm::dvec3& tip) {
+    SightBase base{tipOf(room, tip)};
+    const Origin& tracker = room.origins.tracker;
+    if (!tracker.isCalibrated()) return base;
+    const MeasuredSigma said = sigmaOf(tracker);
+    base.trackerShift = said.metres / std::numbers::sqrt3;
+    base.trackerTurn = said.radians / std::numbers::sqrt3;
+    if (tracker.date < room.origins.pointer.date) return base; // another tip
+    const double shared = std::min(said.tipMetres / std::numbers::sqrt3, base.trackerShift);
+    base.tipShare = std::min(1.0, shared / base.tip.sigma.x);
+    base.trackerShift = std::sqrt(base.trackerShift * base.trackerShift - shared * shared);
+    return base;
 }
 
 /// Runs a registration as a whole or not at all: what is refused leaves the installation as it was.
@@ -58,15 +90,15 @@ template <typename Work> Registration orRefusal(const Installation& believed, co
 }
 
 std::string worthOf(const Registration& result) {
-    return std::to_string(result.fresh.points.size()) + " fresh points lie " + mm(result.fresh.rms) +
-           " off (RMS), the worst " + mm(result.fresh.worst);
+    return std::to_string(result.fresh.points.size()) + " check points that the fit never saw lie " +
+           mm(result.fresh.rms) + " off (RMS), the worst " + mm(result.fresh.worst);
 }
 
 Origin measured(std::string method, const MeasuredSigma& sigma) {
     return {Origin::Way::measured, withSigma(std::move(method), sigma), utcDate()};
 }
 Origin measured(std::string method, const Registration& result) {
-    return measured(std::move(method), {result.shiftSigma, result.turnSigma, 0.0});
+    return measured(std::move(method), {result.shiftSigma, result.turnSigma, 0.0, result.tipSigma});
 }
 
 template <typename Place> void take(Registration& result, Place&& place) {
@@ -74,6 +106,7 @@ template <typename Place> void take(Registration& result, Place&& place) {
     result.points = std::move(place.points);
     result.turnSigma = place.turnSigma;
     result.shiftSigma = place.shiftSigma;
+    result.tipSigma = place.tipSigma;
     result.warnings = std::move(place.warnings);
 }
 
@@ -130,7 +163,7 @@ void solveDots(const DotCapture& capture, const CaptureFault* undo, const Progre
     const Installation& room = result.installation;
     const glm::dvec3 tip = withoutFault(glm::dvec3(room.pointerTip), undo);
     TrackerPlace place =
-        placeTracker(rowsOf(capture.dots, room, tip, capture.tableHeight, undo), {tip, capture.tipSigma}, progress);
+        placeTracker(rowsOf(capture.dots, room, tip, capture.tableHeight, undo), tipOf(room, tip), progress);
     const Figures figures = place.figures;
     take(result, std::move(place));
     result.fresh =
@@ -204,8 +237,43 @@ void judgeDevice(DevicePlace place, const std::vector<TouchedLandmark>& fresh, c
 void solveLandmarks(const LandmarkCapture& capture, const CaptureFault* undo, const Progress& progress,
                     Registration& result) {
     const glm::dvec3 tip = withoutFault(glm::dvec3(result.installation.pointerTip), undo);
-    judgeDevice(placeDevice(rowsOf(capture.touches, tip, undo), {tip, capture.tipSigma}, progress), capture.fresh, undo,
-                "touched points, " + std::to_string(capture.touches.size()), result);
+    judgeDevice(placeDevice(rowsOf(capture.touches, tip, undo), tipOf(result.installation, tip), progress),
+                capture.fresh, undo, "touched points, " + std::to_string(capture.touches.size()), result);
+}
+
+/// Which of so many points are held out: spread evenly, by nothing but their order.
+std::vector<bool> heldOutOf(std::size_t count) {
+    const std::size_t held = std::max(FreshCheck::kFewest, count / kHeldShare);
+    std::vector<bool> out(count, false);
+    for (std::size_t k = 0; k < held; ++k) out[(2 * k + 1) * count / (2 * held)] = true;
+    return out;
+}
+
+void solveRecorded(const RecordedLandmarks& capture, const Progress& progress, Registration& result) {
+    const glm::dvec3 tip(result.installation.pointerTip);
+    LandmarkFit found = fitLandmarks(capture.pointer, capture.body, capture.model, tip);
+    std::erase_if(found.points, [](const Landmark& point) { return !point.touched; });
+    const std::size_t count = found.points.size();
+    if (count < kFewestRecorded)
+        registration::refuse(Cause::tooFewPoints, "touched points",
+                             std::to_string(count) + " points are too few to hold out three of them as check points",
+                             "name and touch seven or more");
+    const std::vector<bool> isHeldOut = heldOutOf(count);
+    LandmarkRows fitted, held;
+    for (std::size_t i = 0; i < count; ++i) {
+        const Landmark& point = found.points[i];
+        LandmarkRows& rows = isHeldOut[i] ? held : fitted;
+        rows.rows.push_back({point.pointer, point.onModel, kRecordedSigma});
+        rows.outward.emplace_back();
+        rows.names.push_back(point.name);
+    }
+    DevicePlace place = placeDevice(fitted, tipOf(result.installation, tip), progress);
+    Figures figures = place.figures;
+    figures.tip = tip;
+    take(result, std::move(place));
+    result.warnings.insert(result.warnings.end(), found.warnings.begin(), found.warnings.end());
+    result.fresh = checkFresh(errorsOf(held, figures), kFreshDevice);
+    keepDevice(result, figures.bodyFromDevice, "recorded touches, " + std::to_string(fitted.rows.size()) + " points");
 }
 
 /// Where the device lies as far as is known.
@@ -234,12 +302,13 @@ void solveSurface(const SurfaceCapture& capture, const CaptureFault* undo, const
 void solveEye(const EyeCapture& capture, const CaptureFault* undo, const Progress& progress, Registration& result) {
     Figures figures = figuresIn(result.installation);
     figures.tip = withoutFault(figures.tip, undo);
-    EyePlace place =
-        placeEye(rowsOf(capture.alignments, figures.tip, undo), figures.worldFromTracker, figures.tip, progress);
+    EyePlace place = placeEye(rowsOf(capture.alignments, figures.tip, undo), figures.worldFromTracker,
+                              sightBaseOf(result.installation, figures.tip), progress);
     figures.eyeFromHead = place.eyeFromHead;
     result.rms = place.rms;
     result.points = std::move(place.points);
     result.shiftSigma = glm::length(place.sigma);
+    result.tipSigma = place.tipSigma;
     result.warnings = std::move(place.warnings);
     result.fresh = checkFresh(errorsOf(rowsOf(capture.fresh, figures.tip, undo), figures), kFreshEye);
     result.installation.eyeFromHead = glm::vec3(figures.eyeFromHead);
@@ -274,6 +343,7 @@ void solveJointly(const JointCapture& capture, const Progress& progress, Registr
     const registration::Refined refined = registration::refine(rows, start, {true, true, true, true}, progress);
     result.turnSigma = refined.sigmas.trackerTurn;
     result.shiftSigma = refined.sigmas.trackerShift;
+    result.tipSigma = refined.sigmas.trackerTip;
     for (const auto& errors :
          {errorsOf(dots, refined.figures), errorsOf(landmarks, refined.figures), errorsOf(sights, refined.figures)})
         result.points.insert(result.points.end(), errors.begin(), errors.end());
@@ -288,10 +358,11 @@ void solveJointly(const JointCapture& capture, const Progress& progress, Registr
     const char* const method = "all that was touched and aimed at, together";
     const registration::Sigmas& sigmas = refined.sigmas;
     Installation::Origins& origins = result.installation.origins;
-    origins.tracker = measured(method, {sigmas.trackerShift, sigmas.trackerTurn, 0.0});
-    origins.pointer = measured(method, {glm::length(sigmas.tip), 0.0, 0.0});
-    origins.deviceBody = measured(method, {sigmas.deviceShift, sigmas.deviceTurn, 0.0});
-    origins.eyeOffset = measured(method, {glm::length(sigmas.eye), 0.0, 0.0});
+    // The pointer first: by their dates the others are known to share its tip.
+    origins.pointer = measured(method, {glm::length(sigmas.tip), 0.0, 0.0, 0.0});
+    origins.tracker = measured(method, {sigmas.trackerShift, sigmas.trackerTurn, 0.0, sigmas.trackerTip});
+    origins.deviceBody = measured(method, {sigmas.deviceShift, sigmas.deviceTurn, 0.0, sigmas.deviceTip});
+    origins.eyeOffset = measured(method, {glm::length(sigmas.eye), 0.0, 0.0, sigmas.eyeTip});
     result.summary = "All together: " + worthOf(result) + ".";
 }
 
@@ -344,6 +415,11 @@ Registration registerDevice(const LandmarkCapture& capture, const Installation& 
             return one;
         });
     });
+}
+
+Registration registerDevice(const RecordedLandmarks& capture, const Installation& believed, const Progress& progress) {
+    progress.report(0.0, "finding which point is which");
+    return orRefusal(believed, [&](Registration& result) { solveRecorded(capture, progress, result); });
 }
 
 Registration registerDevice(const SurfaceCapture& capture, const Installation& believed, const Progress& progress) {

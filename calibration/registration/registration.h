@@ -12,8 +12,8 @@
 #include "core/scene/installation.h"
 
 /// Tracker, pointer, device and eye: from what was recorded, in the lab or of hardware, to figures of the installation.
-/// All of them end with points that the fit never saw; without three of them, or where they contradict it, nothing is
-/// kept.
+/// All of them end with check points, which the fit never saw; without three of them, or where they contradict it,
+/// nothing is kept. The code calls them fresh.
 namespace lumorph {
 
 /// What a registration came to.
@@ -23,11 +23,14 @@ struct Registration {
     std::optional<Finding> refusal;
     std::vector<Finding> warnings;
 
-    std::string summary;                      ///< one sentence with the figures that count
-    double rms = 0.0;                         ///< metres: the fit's own residual
-    std::vector<PointError> points;           ///< of the fit
-    FreshCheck fresh;                         ///< of points that it never saw
-    double turnSigma = 0.0, shiftSigma = 0.0; ///< what the fit thinks of itself: radians, metres
+    std::string summary;            ///< one sentence with the figures that count
+    double rms = 0.0;               ///< metres: the fit's own residual
+    std::vector<PointError> points; ///< of the fit
+    FreshCheck fresh;               ///< of the check points
+    /// How well it is known, radians and metres: by the fit, with the noise of the tracker and what is open of tip and
+    /// tracker, as the origins of `believed` say.
+    double turnSigma = 0.0, shiftSigma = 0.0;
+    double tipSigma = 0.0; ///< metres: what of `shiftSigma` the pointer's tip makes
     [[nodiscard]] bool good() const { return !refusal && fresh.good(); }
 };
 
@@ -44,7 +47,6 @@ struct PointerCapture {
 struct DotCapture {
     std::vector<TouchedDot> dots, fresh;
     std::optional<double> tableHeight = 0.0; ///< of the plane on which they lie; empty: unknown
-    glm::dvec3 tipSigma{0.0002};             ///< metres: how well the installation's tip is known
 };
 [[nodiscard]] Registration registerTracker(const DotCapture& capture, const Installation& believed,
                                            const Progress& progress = {});
@@ -68,9 +70,19 @@ struct BoardCapture {
 /// Points of the device's model that a pointer touches.
 struct LandmarkCapture {
     std::vector<TouchedLandmark> touches, fresh;
-    glm::dvec3 tipSigma{0.0002}; ///< metres
 };
 [[nodiscard]] Registration registerDevice(const LandmarkCapture& capture, const Installation& believed,
+                                          const Progress& progress = {});
+
+/// One recording of a pointer that rests on one point of the device's model after another (landmarks.h).
+struct RecordedLandmarks {
+    PoseTrack pointer, body; ///< in the tracker's world, by one clock
+    std::vector<NamedPoint> model;
+};
+/// Of the points that were touched one in four, three at least, are held out before it is solved, as check points: they
+/// are spread over the order of the model, whatever their errors are. Which place is which point is found by all of
+/// them. Refuses `too_few_points` for fewer than seven, and as fitLandmarks.
+[[nodiscard]] Registration registerDevice(const RecordedLandmarks& capture, const Installation& believed,
                                           const Progress& progress = {});
 
 /// The device's surface by structured light, while its body is tracked and rests; and landmarks as fresh points. It

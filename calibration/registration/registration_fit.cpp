@@ -235,11 +235,29 @@ private:
         const auto norm = [](const std::array<double, 6>& d, std::size_t first) {
             return std::sqrt(d[first] * d[first] + d[first + 1] * d[first + 1] + d[first + 2] * d[first + 2]);
         };
+        const auto ofTip = [&](const double* block, int size, bool isFree) {
+            if (!isFree || !free_.tip || !rows_.tip || !known) return 0.0;
+            std::array<double, 18> values{};
+            covariance.GetCovarianceBlock(block, tip_.data(), values.data());
+            const Eigen::Map<const Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor>> both(values.data(), size,
+                                                                                                   3);
+            // Estimates are linear in what they are made of: the row of the tip moves them by this times its error,
+            // in units of its sigma.
+            const Eigen::Matrix3d moves = both.bottomRows<3>() * eigen(rows_.tip->sigma).cwiseInverse().asDiagonal();
+            return moves.norm();
+        };
         const auto world = deviations(worldStep_.data(), 6, free_.tracker);
         const auto device = deviations(deviceStep_.data(), 6, free_.device);
         const auto tip = deviations(tip_.data(), 3, free_.tip), eye = deviations(eye_.data(), 3, free_.eye);
-        return {norm(world, 0),  norm(world, 3),           norm(device, 0),
-                norm(device, 3), {tip[0], tip[1], tip[2]}, {eye[0], eye[1], eye[2]}};
+        return {norm(world, 0),
+                norm(world, 3),
+                norm(device, 0),
+                norm(device, 3),
+                {tip[0], tip[1], tip[2]},
+                {eye[0], eye[1], eye[2]},
+                ofTip(worldStep_.data(), 6, free_.tracker),
+                ofTip(deviceStep_.data(), 6, free_.device),
+                ofTip(eye_.data(), 3, free_.eye)};
     }
 
     const Rows& rows_;

@@ -64,6 +64,8 @@ struct Rows {
 struct Sigmas {
     double trackerTurn = 0.0, trackerShift = 0.0, deviceTurn = 0.0, deviceShift = 0.0; ///< radians, metres
     glm::dvec3 tip{0.0}, eye{0.0};                                                     ///< metres
+    /// What of the shifts, and of the eye over all axes, the error of the row of the tip makes, metres.
+    double trackerTip = 0.0, deviceTip = 0.0, eyeTip = 0.0;
 };
 
 struct Refined {

@@ -105,6 +105,11 @@ Rest restOf(const Touch& touch, const glm::dvec3& tip, double wander) {
     return rest;
 }
 
+double noiseOf(const Rest& rest) {
+    constexpr double kAlike = 5.0, kAxes = 3.0;
+    return rest.rms * std::sqrt(kAlike / (kAxes * double(std::max<std::size_t>(1, rest.poses))));
+}
+
 Touch withoutFault(const Touch& touch, const CaptureFault* fault) {
     if (!fault) return touch;
     Touch right{touch.name, withoutFault(touch.pointer, *fault), std::nullopt};

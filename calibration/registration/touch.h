@@ -34,6 +34,10 @@ struct Rest {
 [[nodiscard]] Touch withoutFault(const Touch& touch, const CaptureFault* fault);
 [[nodiscard]] glm::dvec3 withoutFault(const glm::dvec3& tip, const CaptureFault* fault);
 
+/// Standard deviation of a rest's mean along each axis, metres: what tracker and hand leave of it. Neighbouring poses
+/// err alike, as if one in five were independent.
+[[nodiscard]] double noiseOf(const Rest& rest);
+
 /// The mean of poses that are near one another.
 [[nodiscard]] Pose meanPose(std::span<const Pose> poses);
 

@@ -155,7 +155,8 @@ DotRows rowsOf(std::span<const TouchedDot> dots, const Installation& room, const
     for (const TouchedDot& dot : dots) {
         const CalibratedCamera& lens = lensOf(room, dot);
         const Rest rest = restOf(withoutFault(dot.touch, undo), tip);
-        all.rows.push_back({rest.pointer, true, positionOf(lens), directionOf(lens, dot.pixel), height, kDotSigma});
+        all.rows.push_back({rest.pointer, true, positionOf(lens), directionOf(lens, dot.pixel), height,
+                            std::hypot(kDotSigma, noiseOf(rest))});
         all.names.push_back(dot.touch.name);
         all.warnings.insert(all.warnings.end(), rest.warnings.begin(), rest.warnings.end());
     }
@@ -195,6 +196,7 @@ TrackerPlace placeTracker(const DotRows& dots, const registration::TipRow& tip, 
     place.figures = refined.figures;
     place.turnSigma = refined.sigmas.trackerTurn;
     place.shiftSigma = refined.sigmas.trackerShift;
+    place.tipSigma = refined.sigmas.trackerTip;
     place.warnings = dots.warnings;
     judge(place, dots);
     return place;

@@ -34,6 +34,7 @@ struct TrackerPlace {
     double rms = 0.0;                         ///< metres by which the points miss
     std::vector<PointError> points;           ///< one each
     double turnSigma = 0.0, shiftSigma = 0.0; ///< radians; metres, in the middle of the points
+    double tipSigma = 0.0;                    ///< metres: what of `shiftSigma` the tip makes
     std::vector<Finding> warnings;
 };
 

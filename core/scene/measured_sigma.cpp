@@ -17,9 +17,9 @@ struct Unit {
     double inSi;
     double MeasuredSigma::*figure;
 };
-constexpr std::array kUnits{Unit{" mm", 1e-3, &MeasuredSigma::metres},
-                            Unit{kDegrees, std::numbers::pi / 180.0, &MeasuredSigma::radians},
-                            Unit{" ms", 1e-3, &MeasuredSigma::seconds}};
+constexpr std::array kUnits{
+    Unit{" mm", 1e-3, &MeasuredSigma::metres}, Unit{kDegrees, std::numbers::pi / 180.0, &MeasuredSigma::radians},
+    Unit{" ms", 1e-3, &MeasuredSigma::seconds}, Unit{" mm of the tip", 1e-3, &MeasuredSigma::tipMetres}};
 
 /// Three digits that count, with a point whatever the locale.
 std::string textOf(double value) {
@@ -49,8 +49,10 @@ MeasuredSigma sigmaOf(const Origin& origin) {
         const auto read = std::from_chars(rest.data(), rest.data() + rest.size(), value);
         if (read.ec != std::errc() || !std::isfinite(value) || !(value > 0.0)) continue;
         rest.remove_prefix(static_cast<std::size_t>(read.ptr - rest.data()));
+        const Unit* longest = nullptr; // " mm" begins " mm of the tip"
         for (const Unit& unit : kUnits)
-            if (rest.starts_with(unit.name)) sigma.*unit.figure = value * unit.inSi;
+            if (rest.starts_with(unit.name) && (!longest || unit.name.size() > longest->name.size())) longest = &unit;
+        if (longest) sigma.*longest->figure = value * longest->inSi;
     }
     return sigma;
 }

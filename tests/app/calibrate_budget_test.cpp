@@ -27,7 +27,7 @@ TEST(CalibrateBudget, MeasuringAPartLowersItAndIsTold) {
     project.rig = writeCutTablet(folder.path()).filename().string();
     writeProject(project, file);
     const nlohmann::json before = budgetOfProject(file);
-    ASSERT_EQ(before["parts"].size(), 7U);
+    ASSERT_EQ(before["parts"].size(), 8U);
     double squares = 0.0, shares = 0.0;
     for (const auto& part : before["parts"]) {
         squares += std::pow(part["millimetres"].get<double>(), 2);

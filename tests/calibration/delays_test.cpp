@@ -172,6 +172,22 @@ TEST(TrackerDelay, IsFoundByTheSameBodyInTheCamera) {
     EXPECT_LT(spread.inSigmas(), 2.0);
 }
 
+TEST(TrackerDelay, AHalfThatTellsNothingIsNotAHalfThatAgrees) {
+    const test::HandMotion hand(71);
+    const Pose worldB{{0.4, -0.2, 1.1}, rotationOfTurn({0.3, 1.2, -0.4})};
+    const Pose aFromB{{0.02, 0.05, -0.03}, rotationOfTurn({0.1, -0.5, 0.2})};
+    for (const bool stops : {true, false}) {
+        const auto at = [&](double seconds) { return hand.at(stops ? std::min(seconds, 18.0) : seconds); };
+        const PoseTrack tracker = test::trackOf(at, 40.0, 60.0, 72);
+        const PoseTrack camera =
+            test::trackOf([&](double t) { return worldB * at(t + 0.0123) * aFromB; }, 40.0, 15.0, 73);
+        const MeasuredDelay delay = solveTrackerDelay(tracker, camera);
+        EXPECT_NEAR(delay.seconds, 0.0123, 0.002);
+        EXPECT_EQ(delay.halvesDiffer.has_value(), !stops);
+        EXPECT_GT(delay.sigma, 0.0);
+    }
+}
+
 TEST(TrackerDelay, NamesWhatIsWrong) {
     const Installation room = roomWithDelays(0.07, 0.012);
     const auto cause = [&](const BoardCapture& capture) {

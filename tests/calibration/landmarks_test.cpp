@@ -1,11 +1,13 @@
 #include "calibration/registration/landmarks.h"
 
+#include <algorithm>
 #include <cstdio>
 #include <filesystem>
 
 #include <gtest/gtest.h>
 
 #include "calibration/registration/pivot.h"
+#include "calibration/registration/registration.h"
 #include "calibration/registration/rigid_fit.h"
 #include "tracked_motion.h"
 
@@ -154,6 +156,59 @@ TEST(Landmarks, WrongTipModelUnitAndHandAreRefusedByName) {
     std::vector<NamedPoint> mirror = block.model;
     for (NamedPoint& at : mirror) at.place.z = -at.place.z;
     why([&] { (void)fitLandmarks(pointer, reference, mirror, kTip); }, Cause::mirrored);
+}
+
+TEST(RecordedLandmarks, CheckPointsAreHeldOutBeforeItIsSolved) {
+    Block block;
+    block.model.push_back({"g", {0.05, 0.05, 0.04}});
+    block.model.push_back({"h", {0.11, 0.01, 0.06}});
+    block.model.push_back({"i", {0.09, 0.06, 0.01}});
+    const std::vector<std::size_t> order{0, 1, 2, 3, 4, 5, 6, 7, 8};
+    Installation room = defaultInstallation();
+    room.pointerTip = glm::vec3(kTip);
+    const Registration found = registerDevice({block.pointer(order), block.reference(), block.model}, room);
+    ASSERT_TRUE(found.good()) << found.summary;
+    std::printf("  %s\n", found.summary.c_str());
+    EXPECT_NE(found.summary.find("3 check points that the fit never saw"), std::string::npos) << found.summary;
+    ASSERT_EQ(found.fresh.points.size(), 3U);
+    EXPECT_EQ(found.points.size(), 6U);
+    for (const PointError& point : found.points)
+        EXPECT_TRUE(std::ranges::none_of(found.fresh.points, [&](const auto& at) { return at.name == point.name; }));
+    const Pose truth = inverseOf(block.modelFromReference);
+    EXPECT_LT(glm::distance(glm::dvec3(found.installation.bodyFromDevice[3]), truth.position), 0.001);
+    // What happens to a check point changes its error, and nothing else.
+    for (const PointError& held : found.fresh.points) {
+        Block other = block;
+        auto& place = std::ranges::find(other.model, held.name, &NamedPoint::name)->place;
+        place.z += 0.0012;
+        const Registration moved = registerDevice({block.pointer(order), block.reference(), other.model}, room);
+        EXPECT_EQ(moved.installation.bodyFromDevice, found.installation.bodyFromDevice) << held.name;
+        EXPECT_NE(std::ranges::find(moved.fresh.points, held.name, &PointError::name)->metres, held.metres);
+    }
+    // Too few to hold any out.
+    const Block six;
+    const Registration few = registerDevice({six.pointer({0, 1, 2, 3, 4, 5}), six.reference(), six.model}, room);
+    ASSERT_TRUE(few.refusal);
+    EXPECT_EQ(few.refusal->cause, Cause::tooFewPoints);
+    EXPECT_NE(few.refusal->remedy.find("seven"), std::string::npos);
+}
+
+TEST(RecordedLandmarks, ARealStylusOnABlock) {
+    const std::string folder = LUMORPH_SHARED_DIR "/data/landmarks/";
+    if (!std::filesystem::exists(folder)) GTEST_SKIP() << "without ../shared/data/landmarks";
+    const RecordedLandmarks capture{parsePoseTrack(test::textOfFile(folder + "pointer.csv"), "pointer.csv"),
+                                    parsePoseTrack(test::textOfFile(folder + "reference.csv"), "reference.csv"),
+                                    parseNamedPoints(test::textOfFile(folder + "model.csv"), "model.csv")};
+    Installation room = defaultInstallation();
+    room.pointerTip = {0.108565F, 0.00777385F, 0.0025389F};
+    room.origins.pointer = {Origin::Way::entered, "", ""};
+    const Registration found = registerDevice(capture, room);
+    std::printf("  %s\n", found.summary.c_str());
+    ASSERT_TRUE(found.good()) << found.summary;
+    EXPECT_EQ(found.fresh.points.size(), 3U);
+    EXPECT_LT(found.fresh.rms, 0.001);
+    room.pointerTip = glm::vec3(0.0F);
+    EXPECT_TRUE(registerDevice(capture, room).refusal);
 }
 
 TEST(Landmarks, RealStylusOnABlockIsWithinAThirdOfAMillimetre) {

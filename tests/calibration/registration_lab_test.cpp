@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 #include <memory>
+#include <random>
 
 #include <glm/geometric.hpp>
 #include <glm/gtc/matrix_transform.hpp>
@@ -11,6 +12,7 @@
 
 #include "calibration/lab/board_lab.h"
 #include "calibration/registration/surface_fit.h"
+#include "core/scene/measured_sigma.h"
 #include "tests/support/cut_tablet.h"
 
 // R24, R25, R26: tracker, pointer, device and eye in millimetres, against the lab's truth.
@@ -124,6 +126,76 @@ TEST(RegistrationLab, AllTogetherIsNoWorseThanOneByOne) {
                 tipBefore, tipAfter, before, after, eyeBefore, eyeAfter);
     EXPECT_LE(tipAfter, tipBefore + 0.05);
     EXPECT_LE(after, before + 0.1);
+}
+
+/// Errors in units of the sigmas that were said of them.
+struct InSigmas {
+    double squares = 0.0, said = 0.0, off = 0.0, count = 0.0;
+    void add(double millimetres, double sigma) {
+        squares += std::pow(1e-3 * millimetres / sigma, 2);
+        off += std::pow(millimetres, 2);
+        said += std::pow(1e3 * sigma, 2);
+        count += 1.0;
+    }
+    void print(const char* what) const {
+        std::printf("%-24s off %.2f mm, said %.2f mm, %.2f sigmas\n", what, std::sqrt(off / count),
+                    std::sqrt(said / count), ratio());
+    }
+    [[nodiscard]] double ratio() const { return std::sqrt(squares / count); }
+};
+
+TEST(RegistrationLab, ErrorsOfTheTipAndOfTheTrackerReachWhatIsMeasuredWithThem) {
+    constexpr unsigned kRooms = 60;
+    RegistrationLabOptions options; // hands that are as the solver takes them to be
+    options.hands.dotMillimetres = 0.7;
+    options.hands.landmarkMillimetres = 0.4;
+    options.hands.aimPixels = 2.25;
+    for (const double tipMillimetres : {0.1, 0.5}) { // along each axis
+        InSigmas ofTracker, ofDevice, ofEye, inRoom;
+        for (unsigned seed = 301; seed <= 300 + kRooms; ++seed) {
+            const Room room(seed);
+            std::mt19937 engine(seed);
+            std::normal_distribution<double> normal(0.0, 1e-3 * tipMillimetres);
+            Installation believed = room.believed;
+            believed.cameras.clear();
+            believed.pointerTip = room.truth.pointerTip + glm::vec3(normal(engine), normal(engine), normal(engine));
+            believed.origins.pointer = {Origin::Way::measured,
+                                        withSigma("pivoting", {1e-3 * tipMillimetres * std::sqrt(3.0), 0.0, 0.0, 0.0}),
+                                        "2026-11-20T10:00:00Z"};
+            const Registration tracker =
+                registerTracker(captureDotsInLab(tablet(), believed, room.truth, seed, options), believed);
+            ASSERT_TRUE(tracker.good()) << tracker.summary;
+            const Registration device =
+                registerDevice(captureLandmarksInLab(tablet(), room.truth, seed, options), tracker.installation);
+            ASSERT_TRUE(device.good()) << device.summary;
+            const Registration eye =
+                registerEye(captureEyeInLab(tablet(), believed, room.truth, seed, options), device.installation);
+            ASSERT_TRUE(eye.good()) << eye.summary;
+            ofTracker.add(trackerOff(tracker.installation, room.truth).millimetres, tracker.shiftSigma);
+            ofDevice.add(deviceOff(device.installation, room.truth).millimetres, device.shiftSigma);
+            ofEye.add(eyeOff(eye.installation, room.truth), eye.shiftSigma);
+            for (const Registration* one : {&tracker, &device, &eye}) EXPECT_LE(one->tipSigma, one->shiftSigma);
+            // Where the device comes to lie in the room: what both have of the tip partly cancels.
+            const Installation& said = eye.installation;
+            const glm::mat4 body = glm::inverse(room.truth.worldFromTracker) * room.truth.worldFromDevice *
+                                   glm::inverse(room.truth.bodyFromDevice);
+            const double all = std::sqrt(std::pow(tracker.shiftSigma, 2) + std::pow(device.shiftSigma, 2) -
+                                         2.0 * tracker.tipSigma * device.tipSigma);
+            inRoom.add(offOf(said.worldFromTracker * body * said.bodyFromDevice, room.truth.worldFromDevice,
+                             glm::dvec3(room.truth.worldFromDevice * glm::vec4(0.0F, 0.01F, 0.0F, 1.0F)))
+                           .millimetres,
+                       all);
+        }
+        std::printf("tip %.1f mm along each axis\n", tipMillimetres);
+        ofTracker.print("tracker");
+        ofDevice.print("device");
+        ofEye.print("eye");
+        inRoom.print("device in the room");
+        for (const InSigmas* one : {&ofTracker, &ofDevice, &ofEye, &inRoom}) {
+            EXPECT_GT(one->ratio(), 0.4);
+            EXPECT_LT(one->ratio(), 1.2);
+        }
+    }
 }
 
 TEST(RegistrationLab, TouchedPointsAloneTellTheDevice) {

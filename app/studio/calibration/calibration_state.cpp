@@ -345,8 +345,10 @@ QString causeTitle(Cause cause) {
         return tr("The tracker lost the body");
     case Cause::notANumber:
         return tr("Numbers that are none");
+    case Cause::pointSuspicious:
+        return tr("Points that the others contradict");
     case Cause::freshPointsFar:
-        return tr("Fresh points contradict it");
+        return tr("Check points contradict it");
     case Cause::servoDead:
         return tr("A servo does not move");
     case Cause::servoSwapped:

@@ -91,7 +91,7 @@ InstallationVersion versionOf(const ChainLink& link, const LinkOutcome& outcome,
     double worst = -1.0;
     for (const LinkPoint& point : outcome.points)
         if (point.isFresh) worst = std::max(worst, point.millimetres);
-    if (worst >= 0.0) version.figures.push_back({"worst fresh point", worst, "mm"});
+    if (worst >= 0.0) version.figures.push_back({"worst check point", worst, "mm"});
     version.isSimulated = outcome.isSimulated;
     version.installation = room;
     link.stage->apply(*outcome.installation, version.installation);

@@ -6,20 +6,16 @@
 #include <glm/geometric.hpp>
 
 #include "calibration/registration/dwells.h"
-#include "calibration/registration/landmarks.h"
 #include "calibration/registration/pivot.h"
 #include "core/base/file.h"
-#include "core/loop/pose_stream.h"
 
 namespace lumorph::studio {
 namespace {
 
 constexpr std::size_t kMostRecorded = 256'000'000; // bytes of one recording: hours of it
 constexpr double kDwellSeconds = 0.8;
-constexpr double kDwellRadius = 0.006;    // metres: a tracker trembles by a millimetre, a long pointer enlarges it
-constexpr double kSameDimple = 0.012;     // metres within which two rests are of one dimple
-constexpr double kLeftOutAllowed = 0.002; // metres RMS, as of points that are touched afresh
-constexpr double kMillimetresOfMetre = 1e3;
+constexpr double kDwellRadius = 0.006; // metres: a tracker trembles by a millimetre, a long pointer enlarges it
+constexpr double kSameDimple = 0.012;  // metres within which two rests are of one dimple
 
 std::string recordedText(const FileTask& task, std::size_t file) {
     const std::vector<std::byte> bytes = readFile(task.files.at(file), kMostRecorded);
@@ -53,10 +49,6 @@ std::vector<std::vector<Touch>> restsByDimple(const PoseTrack& track, const glm:
     return dimples;
 }
 
-std::string millimetreText(double metres) {
-    return QString("%1 mm").arg(kMillimetresOfMetre * metres, 0, 'f', 2).toStdString();
-}
-
 } // namespace
 
 Registration pointerFromFiles(const FileTask& task, const Progress& progress) {
@@ -79,29 +71,12 @@ Registration trackerFromFiles(const FileTask& task, const Progress& progress) {
 
 Registration deviceFromFiles(const FileTask& task, const Progress& progress) {
     progress.report(0.0, "reading the recordings");
-    const PoseTrack pointer = recordedTrack(task, 0), body = recordedTrack(task, 1);
-    const auto model = parseNamedPoints(recordedText(task, 2), task.files.at(2).filename().string());
-    progress.report(0.3, "finding which point is which");
+    RecordedLandmarks capture;
+    capture.pointer = recordedTrack(task, 0);
+    capture.body = recordedTrack(task, 1);
+    capture.model = parseNamedPoints(recordedText(task, 2), task.files.at(2).filename().string());
     progress.throwIfCancelled();
-    const LandmarkFit fit = fitLandmarks(pointer, body, model, glm::dvec3(task.believed.pointerTip));
-    Registration result;
-    result.installation = task.believed;
-    result.rms = fit.rms;
-    result.warnings = fit.warnings;
-    std::vector<PointError> unseen;
-    for (const Landmark& point : fit.points) {
-        if (!point.touched) continue;
-        result.points.push_back({point.name, point.error});
-        unseen.push_back({point.name, point.leaveOneOut});
-    }
-    result.fresh = checkFresh(std::move(unseen), kLeftOutAllowed);
-    result.installation.bodyFromDevice = glm::mat4(matrixOf(inverseOf(fit.modelFromReference)));
-    result.installation.origins.deviceBody = {
-        Origin::Way::measured, "recorded touches, " + std::to_string(result.points.size()) + " points", utcDate()};
-    result.summary = std::to_string(result.points.size()) + " touched points fit to " + millimetreText(result.rms) +
-                     " (RMS); where the others have each of them it lies " + millimetreText(result.fresh.rms) +
-                     " off, the worst " + millimetreText(result.fresh.worst) + ".";
-    return result;
+    return registerDevice(capture, task.believed, progress.part(0.3, 1.0));
 }
 
 } // namespace lumorph::studio

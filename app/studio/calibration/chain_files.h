@@ -17,7 +17,7 @@ namespace lumorph::studio {
 [[nodiscard]] Registration trackerFromFiles(const FileTask& task, const Progress& progress);
 
 /// Files: the pointer, its tip resting on one point of the device after another; the device's body at the same time;
-/// the points `name,x,y,z` in the device's frame. Each point is judged by a fit that did not see it.
+/// the points `name,x,y,z` in the device's frame, seven or more. One in four of them, three at least, is a check point.
 [[nodiscard]] Registration deviceFromFiles(const FileTask& task, const Progress& progress);
 
 } // namespace lumorph::studio

@@ -19,6 +19,7 @@
 #include "app/workspaces/calibrate/chain_docks.h"
 #include "app/workspaces/common/step_card.h"
 #include "calibration/budget/error_budget.h"
+#include "core/loop/pose_stream.h"
 
 namespace lumorph::studio {
 namespace {
@@ -41,14 +42,16 @@ QString partName(BudgetPart part) {
         return QObject::tr("Servos");
     case BudgetPart::delay:
         return QObject::tr("Unknown delay");
+    case BudgetPart::pointer:
+        return QObject::tr("Pointer's tip, in all three");
     case BudgetPart::prediction:
         break;
     }
     return QObject::tr("Left by prediction");
 }
 
-QString sourceWords(ErrorSource source) {
-    switch (source) {
+QString sourceWords(const BudgetItem& item) {
+    switch (item.source) {
     case ErrorSource::told:
         return QObject::tr("measured");
     case ErrorSource::measured:
@@ -60,6 +63,7 @@ QString sourceWords(ErrorSource source) {
     case ErrorSource::worked:
         break;
     }
+    if (item.part == BudgetPart::pointer) return QObject::tr("nothing was measured with it yet");
     return QObject::tr("worked out: noise, and turns of the hand");
 }
 
@@ -103,7 +107,8 @@ public:
     explicit BudgetView(const CalibrateParts& parts)
         : parts_(parts), jobs_(*this, parts.studio.jobs, parts.studio.notices),
           card_(new StepCard("budget.card", "target", this)), page_(new QWidget(this)), total_(new QLabel(this)),
-          bar_(new BudgetBar(this)), speed_(new ValueField(Quantity::length, 0.0, kFastest, kUsualSpeed, this)),
+          bar_(new BudgetBar(this)), cut_(makeWords({}, "muted")),
+          speed_(new ValueField(Quantity::length, 0.0, kFastest, kUsualSpeed, this)),
           floats_(new ValueField(Quantity::length, 0.0, kHighest, kUsualFloat, this)) {
         setObjectName("budget.view");
         setProperty("look", "panel");
@@ -170,6 +175,8 @@ private:
                          "is what nobody has measured in this room: it is taken to be as large as it usually "
                          "is, or what is simulated as large as in the virtual lab."),
                       "muted"));
+        cut_->setObjectName("budget.cut");
+        page->addWidget(cut_);
         page->addSpacing(8);
         page->addWidget(makeHeading(tr("What is shown, and who carries it"), this));
         speed_->setObjectName("budget.speed");
@@ -240,9 +247,16 @@ private:
         total_->setText(wholeText(budget.total));
         std::vector<BudgetSlice> slices;
         for (const BudgetItem& item : budget.items)
-            slices.push_back({partName(item.part), sourceWords(item.source), 1e3 * item.metres, item.share,
+            slices.push_back({partName(item.part), sourceWords(item), 1e3 * item.metres, item.share,
                               item.source != ErrorSource::assumed && item.source != ErrorSource::simulated});
         bar_->show(std::move(slices));
+        cut_->setVisible(budget.cutSeconds > 0.0);
+        cut_->setText(
+            tr("Poses are predicted by %1 ms at most. %2 ms more, in which the hand goes %3, are not compensated; "
+               "they count to what is left by prediction.")
+                .arg(1e3 * PoseStream::kFarthestAhead, 0, 'f', 0)
+                .arg(1e3 * budget.cutSeconds, 0, 'f', 0)
+                .arg(wholeText(budget.cutMetres)));
         const auto best =
             std::ranges::find_if(budget.advice, [](const BudgetAdvice& one) { return linkOf(one.part).has_value(); });
         if (best == budget.advice.end())
@@ -280,6 +294,7 @@ private:
     QWidget* page_; ///< what is below the whole sum
     QLabel* total_;
     BudgetBar* bar_;
+    QLabel* cut_; ///< what no prediction reaches
     ValueField *speed_, *floats_;
     std::unique_ptr<BudgetBasis> basis_;
     std::optional<Notice> trouble_; ///< why there is no basis

@@ -28,7 +28,7 @@ void PointBars::show(std::vector<LinkPoint> points) {
         words << QString("%1: %2 mm%3")
                      .arg(point.name)
                      .arg(point.millimetres, 0, 'f', 2)
-                     .arg(point.isFresh ? ", fresh" : "");
+                     .arg(point.isFresh ? ", check point" : "");
     setAccessibleDescription(words.join("; "));
     updateGeometry();
     update();
