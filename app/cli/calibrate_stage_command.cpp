@@ -159,6 +159,10 @@ void run(const StageArguments& arguments, const CalibrationStage& stage, const S
     arguments.apply.checkProject(arguments.project);
     for (const std::string& output : {arguments.picture, arguments.grid})
         if (!output.empty()) checkOutput(output, file.string());
+    std::error_code error;
+    if (std::filesystem::exists(arguments.record, error) && !std::filesystem::is_empty(arguments.record, error))
+        throw InvalidInput("--record " + arguments.record, "is there already and not an empty folder",
+                           "name a new folder, or empty this one");
     (void)labWithFault(stage.key, arguments.fault);
     const Progress progress = session.progress();
     const ProjectContents contents = readContents(file, progress.part(0.0, 0.1));

@@ -377,6 +377,33 @@ private:
     glm::dvec3 tip_;
 };
 
+TEST_F(Chain, WhatTheLabRecordedIsKeptAndSolvedAgainAndStaysSimulated) {
+    ASSERT_TRUE(eventually([&] { return window.state().rig.rig && window.studio().jobs.running().empty(); }, 60s));
+    window.click("chain.link.pointer");
+    ASSERT_TRUE(offers("Measure in the lab"));
+    next();
+    ASSERT_TRUE(offers("Use it")) << story();
+    const std::string told = story();
+    window.click("chain.keep");
+    answerFileDialog(window, "chain.keep.folder", folder.path() / "pointer-1", "Keep");
+    ASSERT_TRUE(eventually([&] { return window.text("chain.kept").contains("pointer-1"); }, 20s));
+    window.screenshot("chain-recording-kept");
+    // It is not used; what is solved again comes to the same.
+    window.click("chain.way.files");
+    EXPECT_FALSE(window.findNow<QAbstractButton>("chain.keep")) << "what was measured another way has gone";
+    window.click("chain.file.recording");
+    answerFileDialog(window, "chain.recording.file", folder.path() / "pointer-1" / "recording.json", "Open");
+    ASSERT_TRUE(offers("Solve the recording")) << story();
+    window.screenshot("chain-recording-chosen");
+    next();
+    ASSERT_TRUE(offers("Use it")) << story();
+    EXPECT_EQ(story(), told) << "the same figures, and simulated";
+    window.screenshot("chain-recording-solved");
+    next();
+    ASSERT_TRUE(eventually([&] { return badge("pointer") == "Simulated"; })) << story();
+    EXPECT_EQ(room().origins.pointer.way, Origin::Way::simulated);
+}
+
 TEST_F(Chain, PointerIsMeasuredWithTheTrackerThatIsConnected) {
     ASSERT_TRUE(eventually([&] { return window.state().rig.rig && window.studio().jobs.running().empty(); }, 60s));
     window.click("chain.link.pointer");

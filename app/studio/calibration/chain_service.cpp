@@ -38,7 +38,9 @@ ChainStep measuringStep(const ChainState& state, ChainStep::Tone tone, const QSt
         return {What::chooseFile, tone, title, text,
                 *missing < link.files.size() ? QObject::tr("Choose: %1").arg(link.files[*missing].title)
                                              : QObject::tr("Choose a recording")};
-    return {What::measure, tone, title, text, QObject::tr("Solve it")};
+    const bool isOurs = !state.files.at(state.chosen).back().empty();
+    return {What::measure, tone, title, text,
+            isOurs ? QObject::tr("Solve the recording") : QObject::tr("Read the recordings")};
 }
 
 } // namespace
