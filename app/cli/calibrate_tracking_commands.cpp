@@ -126,8 +126,8 @@ void landmarks(const TrackingArguments& arguments, const Session& session) {
     std::printf("%.3f mm RMS\n", kMillimetres * result.rms);
     for (const Landmark& at : result.points)
         if (at.touched)
-            std::printf("  %-20s %6.3f mm; leave-one-out %6.3f mm%s\n", at.name.c_str(),
-                        kMillimetres * at.error, kMillimetres * at.leaveOneOut, at.name == worst ? "  (worst)" : "");
+            std::printf("  %-20s %6.3f mm; leave-one-out %6.3f mm%s\n", at.name.c_str(), kMillimetres * at.error,
+                        kMillimetres * at.leaveOneOut, at.name == worst ? "  (worst)" : "");
     printFindings(result.warnings);
 }
 

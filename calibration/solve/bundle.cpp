@@ -15,9 +15,11 @@ namespace lumorph {
 
 namespace {
 
-constexpr double kRobust = 3.0;   // standard deviations
-constexpr double kUnseen = 1e-14; // of the largest eigenvalue: a direction that the data do not tell
-constexpr double kNearest = 1e-9; // a point nearer than that, or behind, is not seen
+constexpr double kRobust = 3.0;     // standard deviations
+constexpr double kUnseen = 1e-14;   // of the largest eigenvalue: a direction that the data do not tell
+constexpr double kNearest = 1e-9;   // a point nearer than that, or behind, is not seen
+constexpr double kMissed = 1e3;     // pixels, or standard deviations: the error of a point that its ray misses
+constexpr double kMostMissed = 0.1; // of a view's points of one kind: with more the state itself is impossible
 constexpr int kBlockSizes[] = {kLensParameters, 6, kBoardParameters, 6, kLensParameters};
 constexpr int kColumns = 2 * kLensParameters + 12 + kBoardParameters; // of one view
 
@@ -110,6 +112,7 @@ struct ViewTerms {
         const auto [x, y] = directionOfPixel(camera, at.camera.x, at.camera.y);
         const Eigen::Vector3d direction(x, y, 1.0);
         const double depth = depthOfBoard(direction, pose, board);
+        if (!(depth > kNearest)) return false;
         const Eigen::Vector3d inCamera = depth * direction;
         const Eigen::Vector3d inProjector = rig * inCamera;
         const Projected projected = project(projector, inProjector);
@@ -156,6 +159,14 @@ Loss cauchy(double s) {
     return {kBend * std::log1p(s / kBend), 1.0 / (1.0 + s / kBend)};
 }
 
+/// What the loss lets an error of `s` count, in units of what errors of normal noise count in the mean: so noise alone
+/// counts in full, and what is far off next to nothing. Both coordinates together, s is exponential with mean 2; for
+/// Cauchy's loss the mean of 1 / (1 + s / 9) is 4.5 exp(4.5) E1(4.5).
+double weightOf(Loss (*loss)(double), double s) {
+    constexpr double kCauchyMean = 0.8399;
+    return loss == cauchy ? loss(s).slope / kCauchyMean : loss(s).slope;
+}
+
 /// Makes the half square of an error its loss: error and slopes, scaled.
 void applyLoss(Loss (*loss)(double), Eigen::Vector2d& error, Slopes* slopes) {
     const double s = error.squaredNorm();
@@ -187,7 +198,7 @@ public:
 
     bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override {
         int row = 0;
-        return forEach(parameters, true, jacobians != nullptr,
+        return forEach(parameters, Counts::byLoss, jacobians != nullptr,
                        [&](const Eigen::Vector2d& error, const Slopes& slopes, bool) {
                            residuals[row] = error.x();
                            residuals[row + 1] = error.y();
@@ -196,9 +207,14 @@ public:
                        });
     }
 
-    /// Normal matrices of corners and of projector points, without a loss.
-    void addNormal(double const* const* parameters, Eigen::MatrixXd& corners, Eigen::MatrixXd& points) const {
-        forEach(parameters, false, true, [&](const Eigen::Vector2d&, const Slopes& slopes, bool ofCamera) {
+    /// How much an error counts: by its loss, where it is to become small; by the weight that the loss gives it, for
+    /// what it tells; or in full, for what a planned point would tell.
+    enum class Counts { byLoss, byWeight, inFull };
+
+    /// Normal matrices of corners and of projector points.
+    void addNormal(double const* const* parameters, Counts counts, Eigen::MatrixXd& corners,
+                   Eigen::MatrixXd& points) const {
+        forEach(parameters, counts, true, [&](const Eigen::Vector2d&, const Slopes& slopes, bool ofCamera) {
             if (ofCamera)
                 corners.noalias() += slopes.transpose() * slopes;
             else
@@ -208,7 +224,7 @@ public:
 
 private:
     template <typename Take>
-    bool forEach(double const* const* parameters, bool robust, bool wantSlopes, const Take& take) const {
+    bool forEach(double const* const* parameters, Counts counts, bool wantSlopes, const Take& take) const {
         static constexpr double kNothing[6] = {};
         BoardShape board = frame_;
         std::copy_n(parameters[2], kBoardParameters, board.terms.begin());
@@ -224,19 +240,40 @@ private:
         const auto finish = [&](double sigma, Loss (*loss)(double), double share, bool ofCamera) {
             error /= sigma;
             if (slopes) *slopes /= sigma;
-            if (robust) applyLoss(loss, error, slopes);
+            if (counts == Counts::byLoss) applyLoss(loss, error, slopes);
+            if (counts == Counts::byWeight) {
+                const double root = std::sqrt(weightOf(loss, error.squaredNorm()));
+                error *= root;
+                if (slopes) *slopes *= root;
+            }
             if (share != 1.0) {
                 error *= share;
                 if (slopes) *slopes *= share;
             }
             take(error, storage, ofCamera);
         };
+        // A single point that cannot be there counts as one far off, which no small step mends.
+        const auto miss = [&](double sigma) {
+            error = {kMissed * sigma, 0.0};
+            if (slopes) slopes->setZero();
+        };
+        const auto isTooMuch = [](std::size_t missed, std::size_t count) {
+            return static_cast<double>(missed) > kMostMissed * static_cast<double>(count);
+        };
+        std::size_t missed = 0;
         for (std::size_t i = 0; i < view_.corners.seen.size(); ++i) {
-            if (!terms.corner(i, error, slopes)) return false;
+            if (!terms.corner(i, error, slopes)) {
+                if (isTooMuch(++missed, view_.corners.seen.size())) return false;
+                miss(options_.cameraSigma);
+            }
             finish(options_.cameraSigma, huber, cornerShare_, true);
         }
+        missed = 0;
         for (std::size_t i = 0; i < points_; ++i) {
-            if (!terms.transfer(view_.projector[i * view_.projector.size() / points_], error, slopes)) return false;
+            if (!terms.transfer(view_.projector[i * view_.projector.size() / points_], error, slopes)) {
+                if (isTooMuch(++missed, points_)) return false;
+                miss(options_.projectorSigma);
+            }
             finish(options_.projectorSigma, cauchy, pointShare_, false);
         }
         return true;
@@ -345,7 +382,7 @@ struct Normals {
 };
 
 Normals normalsOf(const std::vector<ViewObservations>& views, const ViewChoice& use, const BundleOptions& options,
-                  const BundleState& state) {
+                  const BundleState& state, ViewError::Counts counts) {
     const auto size = static_cast<Eigen::Index>(kPosePlace + 6 * state.cameraFromBoard.size());
     Normals all{Eigen::MatrixXd::Zero(size, size), Eigen::MatrixXd::Zero(size, size)};
     for (const int v : use) {
@@ -355,7 +392,7 @@ Normals normalsOf(const std::vector<ViewObservations>& views, const ViewChoice& 
                                       state.projector.data()};
         Eigen::MatrixXd corners = Eigen::MatrixXd::Zero(kColumns, kColumns);
         Eigen::MatrixXd points = corners;
-        ViewError(views[index], options, state.board).addNormal(parameters, corners, points);
+        ViewError(views[index], options, state.board).addNormal(parameters, counts, corners, points);
         const std::array<int, kColumns> places = placesOf(v);
         for (int i = 0; i < kColumns; ++i)
             for (int k = 0; k < kColumns; ++k) {
@@ -425,7 +462,7 @@ double refine(const std::vector<ViewObservations>& views, const ViewChoice& use,
 
 BundleCovariance covarianceOf(const std::vector<ViewObservations>& views, const ViewChoice& use,
                               const BundleOptions& options, const BundleState& state) {
-    const Normals normals = normalsOf(views, use, options, state);
+    const Normals normals = normalsOf(views, use, options, state, ViewError::Counts::byWeight);
     const std::vector<int> places = freePlaces(use, options);
     const Eigen::MatrixXd corners = normals.corners(places, places);
     const Eigen::MatrixXd points = normals.points(places, places);
@@ -440,7 +477,7 @@ BundleCovariance covarianceOf(const std::vector<ViewObservations>& views, const 
 
 Eigen::MatrixXd normalMatrixOf(const std::vector<ViewObservations>& views, const ViewChoice& use,
                                const BundleOptions& options, const BundleState& state) {
-    const Normals normals = normalsOf(views, use, options, state);
+    const Normals normals = normalsOf(views, use, options, state, ViewError::Counts::inFull);
     return normals.corners + normals.points;
 }
 
@@ -461,7 +498,7 @@ std::vector<cv::Point2d> cameraErrors(const ViewObservations& view, const Bundle
     std::vector<cv::Point2d> errors;
     for (std::size_t i = 0; i < view.corners.seen.size(); ++i) {
         Eigen::Vector2d error = Eigen::Vector2d::Zero();
-        terms.corner(i, error, nullptr);
+        if (!terms.corner(i, error, nullptr)) error = {kMissed, 0.0};
         errors.emplace_back(error.x(), error.y());
     }
     return errors;
@@ -493,7 +530,7 @@ std::vector<cv::Point2d> projectorErrors(const ViewObservations& view, const Bun
     std::vector<cv::Point2d> errors;
     for (const ProjectorPoint& point : view.projector) {
         Eigen::Vector2d error = Eigen::Vector2d::Zero();
-        terms.transfer(point, error, nullptr);
+        if (!terms.transfer(point, error, nullptr)) error = {kMissed, 0.0};
         errors.emplace_back(error.x(), error.y());
     }
     return errors;

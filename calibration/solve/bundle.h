@@ -58,7 +58,8 @@ using ViewChoice = std::vector<int>;
 
 /// Moves `state` to where the robust sum of squares of reprojection errors is least: of the board's points in the
 /// camera, and of decoded camera pixels, cut with the board, in the projector. One problem, solved jointly (Ceres).
-/// Returns the cost, infinite where it cannot be evaluated at the start.
+/// Single points that cannot be there, as one whose ray misses the board, count as far off; a tenth of a view's make it
+/// impossible. Returns the cost, infinite where it cannot be evaluated at the start.
 double refine(const std::vector<ViewObservations>& views, const ViewChoice& use, const BundleOptions& options,
               BundleState& state);
 
@@ -78,7 +79,8 @@ struct BundleCovariance {
 };
 
 /// Covariance of all parameters at `state`, from the normal matrix of the same problem, all points taken to have the
-/// noise that `options` says. What the data cannot tell gets a huge variance.
+/// noise that `options` says, and to tell as much as the loss lets them count: noise in full, what is far off hardly.
+/// What the data cannot tell gets a huge variance.
 [[nodiscard]] BundleCovariance covarianceOf(const std::vector<ViewObservations>& views, const ViewChoice& use,
                                             const BundleOptions& options, const BundleState& state);
 
@@ -91,10 +93,10 @@ struct BundleCovariance {
 [[nodiscard]] Eigen::MatrixXd informationOf(const ViewObservations& view, const BundleOptions& options,
                                             const BundleState& state, const PoseVector& cameraFromBoard);
 
-/// Errors of a view's board points in the camera; pixels.
+/// Errors of a view's board points in the camera; pixels. One that cannot be seen at all is 1000 pixels off.
 [[nodiscard]] std::vector<cv::Point2d> cameraErrors(const ViewObservations& view, const BundleState& state,
                                                     const PoseVector& cameraFromBoard);
-/// Errors of a view's projector points in the projector; pixels.
+/// Errors of a view's projector points in the projector; pixels. One whose ray misses the board is 1000 pixels off.
 [[nodiscard]] std::vector<cv::Point2d> projectorErrors(const ViewObservations& view, const BundleState& state,
                                                        const PoseVector& cameraFromBoard);
 /// Where a camera pixel meets the board, in the camera's frame.

@@ -17,6 +17,7 @@ namespace {
 constexpr double kNearestPoint = 1e-9;      // before a lens
 constexpr double kHidden = 1e-14;           // of the largest eigenvalue: a direction that nothing tells of
 constexpr double kLeastInformation = 1e-30; // of a parameter
+constexpr double kMostMissing = 0.1;        // of all that was seen
 
 template <typename T> void poseForward(const T* pose, const T* point, T* out) {
     ceres::AngleAxisRotatePoint(pose, point, out);
@@ -80,6 +81,7 @@ struct LightError {
         T n[3], inProjector[3], pixel[2], place[3];
         ceres::AngleAxisRotatePoint(body, normal, n);
         const T along = (T(seen.distance) + dotOf(n, body + 3) - dotOf(n, from)) / dotOf(n, ray);
+        if (!(along > T(kNearestPoint))) return false;
         for (int i = 0; i < 3; ++i) place[i] = from[i] + along * ray[i];
         poseForward(projector, place, inProjector);
         if (inProjector[2] < T(kNearestPoint)) return false;
@@ -115,8 +117,8 @@ public:
             addPose(state.worldFromBody[i].data(), i < free.bodies.size() && free.bodies[i]);
         problem_.AddParameterBlock(state.mirror.data(), 3);
         if (!free.mirror) problem_.SetParameterBlockConstant(state.mirror.data());
-        for (const SeenPoint& seen : observations.points) addPoint(seen, noise);
-        for (const SeenLight& seen : observations.lights) addLight(seen, noise);
+        addSeen(observations.points, [&](const SeenPoint& seen) { addPoint(seen, noise); });
+        addSeen(observations.lights, [&](const SeenLight& seen) { addLight(seen, noise); });
     }
 
     double solve(int steps) {
@@ -183,6 +185,16 @@ private:
                                           nullptr, lens);
             addPose(devices[i].fromWorld.data(), what.pose);
         }
+    }
+
+    /// Without single ones that cannot be there, such as light whose ray misses its plane: each would make the whole
+    /// impossible. Where they are many, so it is.
+    template <typename Seen, typename Add> void addSeen(const std::vector<Seen>& all, const Add& add) {
+        const auto isThere = [this](const Seen& seen) { return errorOf(seen, state_).has_value(); };
+        const auto missed = all.size() - static_cast<std::size_t>(std::ranges::count_if(all, isThere));
+        const bool isFew = static_cast<double>(missed) <= kMostMissing * static_cast<double>(all.size());
+        for (const Seen& seen : all)
+            if (missed == 0 || !isFew || isThere(seen)) add(seen);
     }
 
     void addPose(double* pose, bool free) {

@@ -8,6 +8,7 @@
 #include <sstream>
 #include <utility>
 
+#include <Eigen/Dense>
 #include <opencv2/calib3d.hpp>
 
 #include "calibration/solve/board_shape.h"
@@ -27,10 +28,13 @@ constexpr double kWorstPrincipal = 0.1;   // of a principal point, as a share of
 constexpr double kWorstCorner = 0.02;     // what a distortion term may be uncertain by at the image's corner, likewise
 constexpr int kPointsForChoice = 150;     // of a view
 constexpr int kPointsForSolution = 600;
-constexpr double kLeastSigma = 0.01; // pixels
-constexpr double kStray = 3.0;       // standard deviations
-constexpr double kMostNoise = 1.0;   // pixels: more than any noise
-constexpr double kFits = 2.0;        // pixels: above, the model does not fit
+constexpr double kLeastSigma = 0.01;  // pixels
+constexpr double kStray = 3.0;        // standard deviations
+constexpr double kOutlier = 20.0;     // standard deviations: what is nearer, the losses bear
+constexpr double kFewOutliers = 0.05; // of a view's points: more of them have a cause that is to be found
+constexpr double kMostNoise = 1.0;    // pixels: more than any noise
+constexpr double kFits = 2.0;         // pixels: above, the model does not fit
+constexpr double kUntold = 1e-14;     // of the largest eigenvalue: a direction that the data do not tell
 constexpr double kPi = std::numbers::pi;
 
 constexpr const char* kParameterNames[] = {"f", "aspect", "cx", "cy", "k1", "k2", "p1", "p2", "k3"};
@@ -102,24 +106,51 @@ public:
     }
 
     ProcamCalibration camera() {
-        solveCamera();
-        if (options_.judge) chooseBoard();
-        settle(false);
+        solveCameraAlone();
+        if (dropOutliers()) {
+            beginAnew();
+            solveCameraAlone();
+        }
         report(false);
         return std::move(result_);
     }
 
     ProcamCalibration both() {
-        solveCamera();
-        solveProjector();
-        if (options_.judge) chooseBoard();
-        bundle_.most = kPointsForSolution;
-        settle(true);
+        solveBoth();
+        if (dropOutliers()) {
+            beginAnew();
+            solveBoth();
+        }
         report(true);
         return std::move(result_);
     }
 
 private:
+    void solveCameraAlone() {
+        solveCamera();
+        if (options_.judge) chooseBoard();
+        settle(false);
+    }
+
+    void solveBoth() {
+        solveCamera();
+        solveProjector();
+        if (options_.judge) chooseBoard();
+        bundle_.most = kPointsForSolution;
+        settle(true);
+    }
+
+    /// Outliers mislead the choice of a model, which asks for errors on views left out: without them it is made again.
+    void beginAnew() {
+        const cv::Size camera = result_.camera.size, projector = result_.projector.size;
+        result_ = {};
+        result_.camera.size = camera;
+        result_.projector.size = projector;
+        bundle_ = {};
+        state_ = {};
+        cameraFreedom_ = projectorFreedom_ = 0.0;
+    }
+
     void solveCamera() {
         if (options_.start)
             takeStart();
@@ -137,6 +168,7 @@ private:
     }
 
     void solveProjector() {
+        dropMissed();
         if (!options_.start) addFirstProjector(views_, use_, result_.projector.size, options_.projectorFocal, state_);
         bundle_.projectorPoints = true;
         bundle_.most = kPointsForChoice;
@@ -257,12 +289,25 @@ private:
         });
     }
 
-    /// Uncertainties of a solution whose model may still be too poor: what it leaves is not all noise.
+    /// Uncertainties of a solution whose model may still be too poor: what it leaves is neither all noise nor outliers,
+    /// so that noise is bounded and all points count in full.
     [[nodiscard]] Eigen::MatrixXd boundedCovariance() const {
         BundleOptions bounded = bundle_;
         bounded.cameraSigma = std::min(bounded.cameraSigma, kMostNoise);
         bounded.projectorSigma = std::min(bounded.projectorSigma, kMostNoise);
-        return covarianceOf(views_, use_, bounded, state_).matrix;
+        Eigen::MatrixXd covariance = covarianceOf(views_, use_, bounded, state_).matrix;
+        std::vector<Eigen::Index> free;
+        for (Eigen::Index i = 0; i < covariance.rows(); ++i)
+            if (covariance(i, i) > 0.0) free.push_back(i);
+        const Eigen::MatrixXd normal = normalMatrixOf(views_, use_, bounded, state_)(free, free);
+        // Parameters have very different units.
+        const Eigen::VectorXd scale = normal.diagonal().cwiseMax(1e-30).cwiseSqrt().cwiseInverse();
+        const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solved(scale.asDiagonal() * normal * scale.asDiagonal());
+        const Eigen::VectorXd values = solved.eigenvalues().cwiseMax(kUntold * solved.eigenvalues().maxCoeff());
+        covariance(free, free) =
+            Eigen::MatrixXd(scale.asDiagonal() * solved.eigenvectors() * values.cwiseInverse().asDiagonal() *
+                            solved.eigenvectors().transpose() * scale.asDiagonal());
+        return covariance;
     }
 
     void takeBoundedSigmas() {
@@ -345,6 +390,73 @@ private:
         }
     }
 
+    /// Drops a view's points whose errors are beyond `most` pixels, and says so; not where they are many. Returns
+    /// whether there were any.
+    template <typename Points>
+    bool dropped(const ViewObservations& view, const std::vector<cv::Point2d>& errors, double most, const char* what,
+                 const Points& drop) {
+        std::vector<bool> isOut;
+        double worst = 0.0;
+        for (const cv::Point2d& error : errors) {
+            const double size = cv::norm(error);
+            isOut.push_back(!(size <= most));
+            if (isOut.back()) worst = std::max(worst, size);
+        }
+        const auto count = static_cast<std::size_t>(std::ranges::count(isOut, true));
+        if (count == 0 || static_cast<double>(count) > kFewOutliers * static_cast<double>(errors.size())) return false;
+        dropped_.push_back({Cause::pointSuspicious, view.name, "",
+                            std::to_string(count) + " of " + std::to_string(errors.size()) + " " + what +
+                                " lie up to " + pixels(worst) + " from where the others have them",
+                            "nothing: they were left out; a reflection or something before the board makes "
+                            "such points"});
+        drop(isOut);
+        return true;
+    }
+
+    /// Points whose rays miss the board, before a projector is known.
+    void dropMissed() {
+        for (const int v : use_) {
+            const auto at = static_cast<std::size_t>(v);
+            ViewObservations& view = views_[at];
+            std::vector<bool> isOut;
+            for (const ProjectorPoint& point : view.projector) {
+                const double depth =
+                    pointOnBoard(point.camera, state_.camera, state_.cameraFromBoard[at], state_.board).z;
+                isOut.push_back(!(depth > 0.0) || !std::isfinite(depth));
+            }
+            const auto count = std::ranges::count(isOut, true);
+            if (count == 0) continue;
+            dropped_.push_back({Cause::pointSuspicious, view.name, "",
+                                std::to_string(count) + " of " + std::to_string(isOut.size()) +
+                                    " decoded points lie on rays that miss the board",
+                                "nothing: they were left out"});
+            erase(view.projector, isOut);
+        }
+    }
+
+    bool dropOutliers() {
+        bool any = false;
+        for (const int v : use_) {
+            const auto at = static_cast<std::size_t>(v);
+            ViewObservations& view = views_[at];
+            any |= dropped(view, cameraErrors(view, state_, state_.cameraFromBoard[at]), kOutlier * bundle_.cameraSigma,
+                           "points of the board", [&](const std::vector<bool>& isOut) {
+                               erase(view.corners.board, isOut);
+                               erase(view.corners.seen, isOut);
+                           });
+            if (!bundle_.projectorPoints) continue;
+            any |= dropped(view, projectorErrors(view, state_, state_.cameraFromBoard[at]),
+                           kOutlier * bundle_.projectorSigma, "decoded points",
+                           [&](const std::vector<bool>& isOut) { erase(view.projector, isOut); });
+        }
+        return any;
+    }
+
+    template <typename Value> static void erase(std::vector<Value>& values, const std::vector<bool>& isOut) {
+        std::size_t at = 0;
+        std::erase_if(values, [&](const Value&) { return isOut[at++]; });
+    }
+
     void takeFreedom() {
         const BundleCovariance covariance = covarianceOf(views_, use_, bundle_, state_);
         cameraFreedom_ = covariance.cameraFreedom;
@@ -416,6 +528,7 @@ private:
 
     void report(bool projector) {
         progress_.report(0.85, "testing on views left out");
+        result_.warnings.insert(result_.warnings.begin(), dropped_.begin(), dropped_.end());
         finish(result_.camera, state_.camera, bundle_.camera);
         finish(result_.projector, state_.projector, bundle_.projector);
         result_.state = state_;
@@ -508,7 +621,8 @@ private:
         }
     }
 
-    const std::vector<ViewObservations>& views_;
+    std::vector<ViewObservations> views_; // without what was left out
+    std::vector<Finding> dropped_;        // what those were
     ViewChoice use_;
     Progress progress_;
     SolveOptions options_;

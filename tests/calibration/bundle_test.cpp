@@ -1,6 +1,10 @@
 #include "calibration/solve/bundle.h"
 
+#include <algorithm>
 #include <cmath>
+#include <cstdio>
+#include <random>
+#include <string>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -69,6 +73,85 @@ TEST(Bundle, SlopesAreThoseOfFiniteDifferencesEvenOnABentBoard) {
         for (Eigen::Index k = 0; k < normal.cols(); ++k)
             EXPECT_NEAR(normal(i, k), differences(i, k), 1e-5 * std::sqrt(differences(i, i) * differences(k, k)))
                 << i << " " << k;
+}
+
+TEST(Bundle, WhatIsFarOffTellsNothing) {
+    const ProcamSetup setup = ProcamSetup::usual();
+    for (const std::uint32_t seed : {61U, 62U}) {
+        const std::vector<ViewObservations> sound = observe(setup, {0.15, 0.1}, seed);
+        const ProcamCalibration solved = solve(setup, sound);
+        std::vector<ViewObservations> spoiled = sound, without = sound;
+        // Every second point of three views, anywhere.
+        std::mt19937 random(seed);
+        std::normal_distribution<double> anywhere(0.0, 60.0);
+        ViewChoice use;
+        for (std::size_t v = 0; v < sound.size(); ++v) {
+            use.push_back(static_cast<int>(v));
+            if (v % 2 == 0) continue;
+            without[v].projector.clear();
+            for (std::size_t i = 0; i < sound[v].projector.size(); ++i) {
+                if (i % 2 == 1) {
+                    without[v].projector.push_back(sound[v].projector[i]);
+                    continue;
+                }
+                spoiled[v].projector[i].projector.x += 30.0 + std::abs(anywhere(random));
+                spoiled[v].projector[i].projector.y += anywhere(random);
+            }
+        }
+        const BundleState& state = solved.state;
+        const Eigen::MatrixXd full = covarianceOf(sound, use, solved.bundle, state).matrix;
+        const Eigen::MatrixXd far = covarianceOf(spoiled, use, solved.bundle, state).matrix;
+        const Eigen::MatrixXd less = covarianceOf(without, use, solved.bundle, state).matrix;
+        // Without a loss noise tells as much as before, so that clean captures are as sure as ever.
+        const Eigen::MatrixXd normal = normalMatrixOf(sound, use, solved.bundle, state);
+        double grown = 0.0;
+        for (Eigen::Index i = 0; i < full.rows(); ++i) {
+            if (!(full(i, i) > 0.0)) continue;
+            EXPECT_NEAR(std::sqrt(far(i, i) / less(i, i)), 1.0, 0.01) << i;
+            grown = std::max(grown, less(i, i) / full(i, i));
+        }
+        EXPECT_GT(grown, 1.1) << "it matters";
+        std::vector<Eigen::Index> free;
+        for (Eigen::Index i = 0; i < full.rows(); ++i)
+            if (full(i, i) > 0.0) free.push_back(i);
+        const Eigen::MatrixXd plain = normal(free, free).inverse();
+        for (std::size_t k = 0; k < free.size(); ++k)
+            EXPECT_NEAR(std::sqrt(full(free[k], free[k]) / plain(Eigen::Index(k), Eigen::Index(k))), 1.0, 0.04)
+                << free[k];
+    }
+}
+
+TEST(Bundle, PointsThatAreFarOffOrMissTheBoardFailNoViewAndAreNamed) {
+    const ProcamSetup setup = ProcamSetup::usual();
+    const std::vector<ViewObservations> sound = observe(setup, {0.15, 0.1}, 71);
+    std::vector<ViewObservations> spoiled = sound;
+    spoiled[1].projector[7].camera = {1e5, 400.0}; // beyond the board's horizon, or of no direction at all
+    spoiled[2].projector[30].projector += cv::Point2d(40.0, 5.0);
+    spoiled[2].projector[90].projector += cv::Point2d(-25.0, 60.0);
+    spoiled[4].corners.seen[3] += cv::Point2d(9.0, 0.0);
+    const ProcamCalibration found = solve(setup, spoiled);
+    std::vector<std::string> named;
+    for (const Finding& warning : found.warnings) {
+        EXPECT_EQ(warning.cause, Cause::pointSuspicious) << sentenceOf(warning);
+        named.push_back(warning.view + ": " + warning.why.substr(0, 2));
+        std::printf("  %s\n", sentenceOf(warning).c_str());
+    }
+    std::ranges::sort(named);
+    EXPECT_EQ(named, (std::vector<std::string>{"pose_1: 1 ", "pose_2: 2 ", "pose_4: 1 "}));
+    // As if they had never been there.
+    std::vector<ViewObservations> without = sound;
+    const auto erase = [](auto& all, std::ptrdiff_t at) { all.erase(all.begin() + at); };
+    erase(without[1].projector, 7);
+    erase(without[2].projector, 90);
+    erase(without[2].projector, 30);
+    erase(without[4].corners.seen, 3);
+    erase(without[4].corners.board, 3);
+    const ProcamCalibration clean = solve(setup, without);
+    EXPECT_TRUE(clean.warnings.empty());
+    EXPECT_EQ(clean.camera.lens, found.camera.lens);
+    EXPECT_EQ(clean.projector.lens, found.projector.lens);
+    EXPECT_EQ(clean.camera.sigma, found.camera.sigma);
+    for (std::size_t v = 0; v < clean.views.size(); ++v) EXPECT_EQ(clean.views[v].heldOut, found.views[v].heldOut);
 }
 
 TEST(Bundle, TheNoiseOfErrorsIsFoundThoughSomeAreStrays) {

@@ -1,6 +1,7 @@
 #include "calibration/solve/procam_calibration.h"
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
@@ -266,6 +267,25 @@ TEST_F(RealProcam, MeetsItsBars) {
     for (const ViewQuality& view : result.views)
         std::printf("%s: camera %.3f, projector %.3f, held out %.3f pixels\n", view.name.c_str(), view.cameraRms,
                     view.projectorRms, view.heldOut.value_or(0.0));
+}
+
+// As they were before covariances followed the loss and outliers were named.
+TEST_F(RealProcam, FiguresAreTheSameAsEver) {
+    const ProcamCalibration result =
+        calibrateProcamFolder(folder(), parseCalibrationBoard("chess:9x7:75"), parsePattern("graycode", {1024, 768}));
+    EXPECT_NEAR(result.camera.lens[kFocalLength], 3441.44, 0.5);
+    EXPECT_NEAR(result.camera.lens[kPrincipalX], 623.82, 0.5);
+    EXPECT_NEAR(result.camera.lens[kPrincipalY], 503.14, 1.0);
+    EXPECT_NEAR(result.projector.lens[kFocalLength], 1886.20, 0.3);
+    EXPECT_NEAR(result.projector.lens[kPrincipalX], 516.74, 0.3);
+    EXPECT_NEAR(result.projector.lens[kPrincipalY], 849.13, 0.5);
+    const std::array<double, 4> heldOut{0.1368, 0.1712, 0.2623, 0.1238};
+    ASSERT_EQ(result.views.size(), heldOut.size());
+    for (std::size_t v = 0; v < heldOut.size(); ++v) EXPECT_NEAR(*result.views[v].heldOut, heldOut[v], 0.003);
+    EXPECT_NEAR(result.rms, 0.2565, 0.002);
+    EXPECT_NEAR(result.projector.sigma[kFocalLength], 2.97, 0.15);
+    EXPECT_NEAR(result.camera.sigma[kFocalLength], 5.48, 0.27);
+    for (const Finding& warning : result.warnings) std::printf("%s\n", sentenceOf(warning).c_str());
 }
 
 TEST_F(RealProcam, MeetsItsBarsWhateverTheStart) {
