@@ -124,6 +124,7 @@ protected:
                                         },
                                         table.clock},
                                        believed);
+        EXPECT_TRUE(bench->source().isSimulated()) << "the board is no real one";
         std::optional<VerifiedRoom> found;
         std::atomic<bool> isDone = false;
         std::thread job([&, bench = std::move(bench)]() mutable {

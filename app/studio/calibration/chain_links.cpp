@@ -37,10 +37,11 @@ LinkOutcome outcomeOf(const Registration& measured) {
     outcome.summary = QString::fromStdString(measured.summary);
     outcome.installation = measured.installation;
     const FreshCheck& fresh = measured.fresh;
-    outcome.figures = {{QObject::tr("%1 points that the fit never saw: root mean square").arg(fresh.points.size()),
-                        millimetres(fresh.rms), fresh.rms <= fresh.allowed},
-                       {QObject::tr("The worst of them"), millimetres(fresh.worst), fresh.worst <= 2.5 * fresh.allowed},
-                       {QObject::tr("Residual of the fit"), millimetres(measured.rms)}};
+    outcome.figures = {
+        {QObject::tr("%1 check points, which the fit never saw: root mean square").arg(fresh.points.size()),
+         millimetres(fresh.rms), fresh.rms <= fresh.allowed},
+        {QObject::tr("The worst of them"), millimetres(fresh.worst), fresh.worst <= 2.5 * fresh.allowed},
+        {QObject::tr("Residual of the fit"), millimetres(measured.rms)}};
     if (measured.shiftSigma > 0.0)
         outcome.figures.push_back(
             {QObject::tr("Uncertainty of the place"), QString("± %1").arg(millimetres(measured.shiftSigma))});

@@ -138,9 +138,8 @@ private:
 /// What is connected as a bench of the stages.
 class TableBench final : public Bench {
 public:
-    TableBench(const TableParts& parts, const Installation& room)
-        : table_(parts, room), isSimulated_(parts.devices->profile().address.starts_with("sim://") &&
-                                            parts.devices->status().phase == LinkPhase::live),
+    TableBench(const TableParts& parts, const Installation& room, bool isMoved)
+        : table_(parts, room), isSimulated_(isMoved && parts.devices->profile().address.starts_with("sim://")),
           camera_(room.cameras.front().address) {}
 
     [[nodiscard]] RecordingSource source() const override {
@@ -202,7 +201,7 @@ QString tableObstacle(const Installation& room, const DeviceService& devices, bo
 std::shared_ptr<Bench> openTable(const TableParts& parts, const Installation& room, bool isMoved) {
     if (const std::optional<Missing> missing = missingOn(room, *parts.devices, isMoved))
         throw DeviceError("device on the table", missing->why.toStdString(), missing->remedy.toStdString());
-    return std::make_shared<TableBench>(parts, room);
+    return std::make_shared<TableBench>(parts, room, isMoved);
 }
 
 } // namespace lumorph::studio
