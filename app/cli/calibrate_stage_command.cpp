@@ -74,7 +74,9 @@ public:
         lacks(site);
     }
     [[nodiscard]] DeviceBench& device(const StageSite& site) override { lacks(site); }
-    [[nodiscard]] LightBench& light(const StageSite& site, const std::optional<WhiteSheet>&, const Progress&) override { lacks(site); }
+    [[nodiscard]] LightBench& light(const StageSite& site, const std::optional<WhiteSheet>&, const Progress&) override {
+        lacks(site);
+    }
     [[nodiscard]] DelaysCapture recordDelays(const StageSite& site, const Progress&) override { lacks(site); }
 
     [[noreturn]] static void lacks(const StageSite& site) {

@@ -220,9 +220,9 @@ public:
     explicit ChainResult(const CalibrateParts& parts) : parts_(parts) {
         auto* whole = new QVBoxLayout(this);
         whole->setContentsMargins(0, 0, 0, 0);
-        empty_ = makeEmptyState("target", "Not measured yet",
-                                "What a measurement came to is told here, with the check points that the fit never saw.",
-                                nullptr, this);
+        empty_ = makeEmptyState(
+            "target", "Not measured yet",
+            "What a measurement came to is told here, with the check points that the fit never saw.", nullptr, this);
         whole->addWidget(empty_);
         const Column column = makeColumn(this);
         page_ = column.widget;
