@@ -42,12 +42,13 @@ std::string lightPictureName(std::size_t index) {
 /// A bench that keeps what it photographs.
 class KeptLight final : public LightBench {
 public:
-    KeptLight(LightBench& bench, std::size_t projectors, StageRecording& recording)
-        : bench_(bench), recording_(recording), table_(recording.tables["photographs"]) {
+    KeptLight(LightBench& bench, std::size_t projectors, const glm::ivec2& size, StageRecording& recording)
+        : bench_(bench), size_(size), recording_(recording), table_(recording.tables["photographs"]) {
         table_.columns = photographColumns(projectors);
     }
     [[nodiscard]] cv::Mat photograph(const LightShow& show, double seconds) override {
         cv::Mat picture = bench_.photograph(show, seconds);
+        fitPicture(picture, size_, size_); // of another shape than the camera's the patches would lie elsewhere
         const std::vector<double> row = rowOf(show, seconds);
         recording_.pictures[lightPictureName(table_.rows())] = picture;
         table_.numbers.insert(table_.numbers.end(), row.begin(), row.end());
@@ -64,6 +65,7 @@ public:
 
 private:
     LightBench& bench_;
+    glm::ivec2 size_;
     StageRecording& recording_;
     RecordedTable& table_;
 };
@@ -137,7 +139,7 @@ MeasuredStage measureLight(const StageSite& site, Bench& bench, const Progress& 
     }
     const std::vector<LightPatch> patches = lightPatches(room, *site.rig, camera, sheet);
     progress.throwIfCancelled();
-    KeptLight kept(bench.light(site, sheet, progress), room.projectors.size(), recording);
+    KeptLight kept(bench.light(site, sheet, progress), room.projectors.size(), camera.size, recording);
     LightCalibration result = measureLight(site.room, patches, kept, progress.part(0.1, 1.0));
     if (bench.laysSheet() && !sheet) result.warnings.push_back(noRoomForSheet());
     return {std::move(recording), std::move(result)};
