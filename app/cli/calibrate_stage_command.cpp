@@ -52,7 +52,7 @@ constexpr StageHelp kHelp[] = {
     {"verify", "Whether the room is still as it was calibrated, or what has moved", nullptr},
 };
 
-/// As nobody has looked: what is measured does not build on what was measured before.
+/// Without the light that was measured before, so that a measurement does not build on an earlier one.
 Installation withoutLight(Installation room) {
     const InstalledProjector plain;
     for (InstalledProjector& projector : room.projectors) {
@@ -65,7 +65,8 @@ Installation withoutLight(Installation room) {
     return room;
 }
 
-/// A command line has no window to show patterns in, and nobody before it who touches: it says what it lacks.
+/// The bench of a command line: it has no window for patterns and follows no tracker, so each stage says what is
+/// missing.
 class Terminal final : public Bench {
 public:
     [[nodiscard]] RecordingSource source() const override { return {RecordingSource::Kind::table, "", utcDate(), 0}; }
@@ -228,7 +229,9 @@ void addStage(CLI::App& group, const StageHelp& help, Session& session) {
         ->excludes(from);
     command->add_option("--record", arguments->record, "Keep what devices said in a new folder, to solve it again");
     if (key == "light")
-        command->add_flag("--without-sheet", arguments->withoutSheet, "No sheet of white paper lies beside the device");
+        command->add_flag("--without-sheet", arguments->withoutSheet, "No sheet of white paper lies beside the device")
+            ->excludes(table)
+            ->excludes(from);
     if (key == "verify") {
         command
             ->add_option("--moved", arguments->moved,
@@ -238,7 +241,7 @@ void addStage(CLI::App& group, const StageHelp& help, Session& session) {
             ->take_all()
             ->excludes(table)
             ->excludes(from);
-        command->add_option("--pattern", arguments->pattern, "graycode, or phase:16x3+1x3");
+        command->add_option("--pattern", arguments->pattern, "graycode, or phase:16x3+1x3")->excludes(from);
         command->add_option("--picture", arguments->picture, "Draw the error map over the device into a PNG file");
         command->add_option("--grid", arguments->grid,
                             "Draw what the projector shows to check by eye into a PNG file: crosshairs and lines");

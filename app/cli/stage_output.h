@@ -8,10 +8,10 @@
 
 namespace lumorph::cli {
 
-/// What the result of a stage is told with.
+/// What is known beside the result of a stage when it is printed.
 struct StageView {
     const Rig& rig;
-    std::optional<ServoGain> servoGain; ///< what servos gain in the lab's true room; empty where nobody knows it
+    std::optional<ServoGain> servoGain; ///< in the lab's true room; empty for a result of hardware
 };
 
 /// All figures of a result: see resources/guide/formats.md, "What --json prints".

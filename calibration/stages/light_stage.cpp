@@ -45,6 +45,7 @@ public:
     KeptLight(LightBench& bench, std::size_t projectors, const glm::ivec2& size, StageRecording& recording)
         : bench_(bench), size_(size), recording_(recording), table_(recording.tables["photographs"]) {
         table_.columns = photographColumns(projectors);
+        KeptLight::exposureFound({}); // also of a measurement that is refused before
     }
     [[nodiscard]] cv::Mat photograph(const LightShow& show, double seconds) override {
         cv::Mat picture = bench_.photograph(show, seconds);
@@ -79,14 +80,11 @@ public:
             const auto row = table_.row(i);
             places_[keyOf({row.begin(), row.end()})].push_back(i);
         }
-        // Where it was refused before an exposure was found there is no such table.
-        if (!recording.tables.contains("exposures")) return;
         const RecordedTable& range = tableOf(recording, "exposures", kRangeColumns);
         if (range.rows() != 1) lacks("the exposures");
         shortest_ = range.row(0)[0];
         longest_ = range.row(0)[1];
         found_ = {range.row(0)[2], static_cast<int>(stages::indexIn(range.row(0)[3], 100'000, "photographs"))};
-        isFound_ = true;
     }
 
     [[nodiscard]] cv::Mat photograph(const LightShow& show, double seconds) override {
@@ -102,7 +100,8 @@ public:
     [[nodiscard]] double shortestExposure() const override { return shortest_; }
     [[nodiscard]] double longestExposure() const override { return longest_; }
     [[nodiscard]] std::optional<FoundExposure> foundExposure() const override {
-        return isFound_ ? std::optional(found_) : std::nullopt;
+        // Where it was refused before, the exposure is looked for again, to the same refusal.
+        return found_.seconds > 0.0 ? std::optional(found_) : std::nullopt;
     }
 
 private:
@@ -122,7 +121,6 @@ private:
     std::map<std::string, std::vector<std::size_t>> places_;
     double shortest_ = 0.0, longest_ = 0.0;
     FoundExposure found_;
-    bool isFound_ = false;
 };
 
 MeasuredStage measureLight(const StageSite& site, Bench& bench, const Progress& progress) {
@@ -131,11 +129,12 @@ MeasuredStage measureLight(const StageSite& site, Bench& bench, const Progress& 
     const Installation room = stages::roomWithCamera(site, recording.source);
     const CalibratedCamera camera = lightCamera(room.cameras.front().camera);
     std::optional<WhiteSheet> sheet;
-    if (bench.laysSheet()) sheet = placeForSheet(room, *site.rig, camera);
-    if (sheet) {
-        RecordedTable& corners = recording.tables["sheet"];
+    if (bench.laysSheet()) {
+        sheet = placeForSheet(room, *site.rig, camera);
+        RecordedTable& corners = recording.tables["sheet"]; // empty where there is no room for it
         corners.columns = kSheetColumns;
-        for (const glm::vec3& corner : *sheet) corners.add({corner.x, corner.y, corner.z});
+        if (sheet)
+            for (const glm::vec3& corner : *sheet) corners.add({corner.x, corner.y, corner.z});
     }
     const std::vector<LightPatch> patches = lightPatches(room, *site.rig, camera, sheet);
     progress.throwIfCancelled();
@@ -160,14 +159,15 @@ StageResult solveLight(const StageRecording& recording, const StageSite& site, c
     std::optional<WhiteSheet> sheet;
     if (recording.tables.contains("sheet")) {
         const RecordedTable& corners = tableOf(recording, "sheet", kSheetColumns);
-        if (corners.rows() != 4)
+        if (corners.rows() != 0 && corners.rows() != 4)
             throw DataError("recording of light", "its sheet has not four corners", "record again");
-        sheet.emplace();
-        for (std::size_t i = 0; i < 4; ++i)
+        if (corners.rows() == 4) sheet.emplace();
+        for (std::size_t i = 0; i < corners.rows(); ++i)
             (*sheet)[i] = glm::vec3(glm::dvec3(corners.row(i)[0], corners.row(i)[1], corners.row(i)[2]));
     }
     const std::vector<LightPatch> patches = lightPatches(room, *site.rig, camera, sheet);
     LightCalibration result = measureLight(site.room, patches, bench, progress);
+    if (recording.tables.contains("sheet") && !sheet) result.warnings.push_back(noRoomForSheet());
     result.photographs =
         static_cast<int>(tableOf(recording, "photographs", photographColumns(room.projectors.size())).rows());
     return result;

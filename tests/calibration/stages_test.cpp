@@ -154,6 +154,23 @@ INSTANTIATE_TEST_SUITE_P(All, StagesTest,
                          ::testing::Values("light", "pointer", "tracker", "body", "eye", "servos", "delays", "verify"),
                          [](const auto& of) { return std::string(of.param); });
 
+TEST(StageRefusals, AreTheSameOnceTheyAreSolvedFromTheRecording) {
+    constexpr std::pair<const char*, const char*> kFaults[] = {
+        {"light", "saturated"}, {"light", "dark"}, {"light", "ambient"}, {"delays", "covered"}, {"delays", "still"}};
+    for (const auto& [key, fault] : kFaults) {
+        const StageRoom room(key, 7);
+        LabBench bench(*room.site.rig, room.truth, 7, labWithFault(key, fault));
+        const CalibrationStage& stage = calibrationStage(key);
+        const MeasuredStage measured = measureStage(stage, room.site, bench);
+        ASSERT_TRUE(refusalOf(measured.result)) << key << " " << fault;
+        const TemporaryFolder folder;
+        writeStageRecording(measured.recording, folder / "refused");
+        const StageResult again = solveStage(stage, readStageRecording(folder / "refused"), room.site);
+        EXPECT_EQ(refusalOf(again), refusalOf(measured.result)) << key << " " << fault;
+        EXPECT_EQ(figuresOf(roomOf(again)), figuresOf(room.site.room)) << "nothing of it is used";
+    }
+}
+
 /// Devices that are not the lab's, as far as anybody can tell.
 class TouchTable final : public Bench {
 public:

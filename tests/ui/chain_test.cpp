@@ -404,6 +404,21 @@ TEST_F(Chain, WhatTheLabRecordedIsKeptAndSolvedAgainAndStaysSimulated) {
     EXPECT_EQ(room().origins.pointer.way, Origin::Way::simulated);
 }
 
+TEST_F(Chain, DelaysOfWhatIsConnectedAreNotTakenFromTheLab) {
+    ASSERT_TRUE(eventually([&] { return window.state().rig.rig && window.studio().jobs.running().empty(); }, 60s));
+    studio::editInstallation(window.studio().document, "Measured before", [](Installation& room) {
+        const Origin measured{Origin::Way::measured, "by hand", "2026-11-20T10:00:00Z"};
+        room.projectors.front().lens = room.origins.pointer = room.origins.tracker = measured;
+    });
+    window.click("chain.link.delays");
+    window.click("chain.way.live");
+    EXPECT_TRUE(window.text("chain.card.text").contains("cannot time a connected camera")) << story();
+    window.screenshot("chain-delays-connected", 300ms);
+    window.studio().commands.find("calibrate.next")->trigger();
+    EXPECT_TRUE(window.studio().jobs.running().empty());
+    EXPECT_EQ(room().origins.delays.way, Origin::Way::assumed);
+}
+
 TEST_F(Chain, PointerIsMeasuredWithTheTrackerThatIsConnected) {
     ASSERT_TRUE(eventually([&] { return window.state().rig.rig && window.studio().jobs.running().empty(); }, 60s));
     window.click("chain.link.pointer");

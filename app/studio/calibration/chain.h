@@ -82,6 +82,7 @@ struct ChainLink {
     std::vector<LiveStep> (*liveSteps)(const Rig& rig, const Installation& room) = nullptr;
     bool isOnTable = false; ///< it can be measured with the camera and projectors that are connected
     bool isMoved = false;   ///< and with the servos
+    QString notConnected;   ///< why it cannot be measured with what is connected, in a sentence; empty: it can
 
     [[nodiscard]] bool isWithTracker() const noexcept { return !liveRoles.empty(); }
 };

@@ -280,6 +280,8 @@ LinkOutcome outcomeOf(const MeasuredDelays& measured) {
 ChainLink delaysLink() {
     ChainLink link;
     link.stage = &calibrationStage("delays");
+    link.notConnected = QObject::tr("This version cannot time a connected camera and tracker: simulate delays in the "
+                                    "virtual lab, or enter them by hand in Scene.");
     link.id = LinkId::delays;
     link.key = "delays";
     link.title = QObject::tr("Delays");

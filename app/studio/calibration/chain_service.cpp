@@ -29,6 +29,8 @@ ChainStep measuringStep(const ChainState& state, ChainStep::Tone tone, const QSt
     if (!link.stage) return {What::sequence, tone, title, text, QObject::tr("Open it")};
     const LinkWay way = wayOf(state, state.chosen);
     if (way == LinkWay::lab) return {What::measure, tone, title, text, inLab};
+    if (way == LinkWay::live && !link.notConnected.isEmpty())
+        return {What::nothing, ChainStep::Tone::warning, title, link.notConnected, QString()};
     if (way == LinkWay::live)
         return {What::measure, tone, title, text,
                 link.isWithTracker() ? QObject::tr("Begin, with the tracker")
@@ -45,13 +47,7 @@ ChainStep measuringStep(const ChainState& state, ChainStep::Tone tone, const QSt
 
 } // namespace
 
-LinkWay wayOf(const ChainState& state, std::size_t link) {
-    const ChainLink& measured = chainLinks()[link];
-    const bool isPossible = state.way == LinkWay::live    ? measured.isWithTracker() || measured.isOnTable
-                            : state.way == LinkWay::files ? measured.stage != nullptr
-                                                          : true;
-    return isPossible ? state.way : LinkWay::lab;
-}
+LinkWay wayOf(const ChainState& state, std::size_t link) { return chainLinks()[link].stage ? state.way : LinkWay::lab; }
 
 std::optional<std::size_t> missingFile(const ChainState& state, std::size_t link) {
     const std::size_t count = chainLinks()[link].files.size();
@@ -272,6 +268,7 @@ std::function<LinkOutcome(const Progress&)> ChainService::workOf(std::size_t lin
 
 void ChainService::begin(std::size_t link) {
     if (state_.running) return;
+    if (wayOf(state_, link) == LinkWay::live && !chainLinks()[link].notConnected.isEmpty()) return;
     if (wayOf(state_, link) == LinkWay::live)
         return chainLinks()[link].isWithTracker() ? beginLive(link) : beginOnTable(link);
     if (auto work = workOf(link)) run(link, std::move(work));

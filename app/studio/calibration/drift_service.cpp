@@ -112,7 +112,7 @@ ShowCamera machineShowCamera(const std::string& address) {
     };
 }
 
-/// A thread that looks whenever it is told to. Cameras are opened, used and closed in it alone.
+/// The thread of the watch: it takes one picture for each task. Only this thread opens, uses and closes cameras.
 class DriftService::Watcher {
 public:
     explicit Watcher(DriftService& owner)
@@ -132,7 +132,7 @@ public:
         }
         ready_.notify_one();
     }
-    /// Looks of sessions before this one are nobody's, and their camera is closed.
+    /// Starts another session: results of earlier sessions are dropped, and their camera is closed.
     void begin(int session) {
         {
             const std::lock_guard lock(mutex_);
@@ -230,7 +230,7 @@ DriftService::~DriftService() = default;
 bool DriftService::isWatching() const noexcept { return timer_->isActive(); }
 
 void DriftService::setWatching(bool on) {
-    watcher_->begin(++session_); // results of looks before are nobody's
+    watcher_->begin(++session_); // results of earlier looks are dropped
     looks_ = 0;
     drift_ = {};
     output_ = {};

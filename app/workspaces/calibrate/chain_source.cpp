@@ -84,8 +84,9 @@ private:
             way_->setSegment(1, link.isMoved ? "Camera and servos" : "Camera and projectors",
                              "What is on the table, as it is connected");
         else
-            way_->setSegment(1, "Connected tracker", "By touching, step by step, what the studio shows",
-                             link.isWithTracker());
+            way_->setSegment(1, link.isWithTracker() ? "Connected tracker" : "Camera and tracker",
+                             link.isWithTracker() ? "By touching, step by step, what the studio shows"
+                                                  : link.notConnected);
         way_->setChosen(static_cast<int>(wayOf(state, state.chosen)));
         for (QWidget* part : {static_cast<QWidget*>(way_), list_}) part->setEnabled(!state.running);
         refreshLive();
@@ -123,11 +124,11 @@ private:
         const ChainLink& link = chainLinks()[state.chosen];
         const bool isLive = wayOf(state, state.chosen) == LinkWay::live;
         const StudioState& document = parts_.studio.document.state();
-        const QString obstacle = !isLive ? QString()
+        const QString obstacle = !isLive || !link.notConnected.isEmpty() ? QString()
                                  : link.isOnTable
                                      ? tableObstacle(*document.installation, parts_.studio.devices, link.isMoved)
                                      : parts_.live.obstacle(link.liveRoles);
-        seen_->setVisible(isLive && !state.live);
+        seen_->setVisible(isLive && !state.live && link.notConnected.isEmpty()); // else the card says it
         const QString words =
             !obstacle.isEmpty() ? obstacle
             : link.isMoved      ? QString("Camera, projectors and servos are connected.")
