@@ -16,10 +16,9 @@ namespace lumorph::cli {
 namespace {
 
 struct DeviceCaptureArguments {
-    std::string folder, rig;
+    std::string rig;
     std::vector<std::string> projectors; ///< "NAME=WIDTHxHEIGHT", or the size alone
     PatternArguments patterns;
-    bool json = false;
 };
 
 /// Who has no name is called "projector", or by a number where there are several.
@@ -55,7 +54,8 @@ void printPlaced(const CalibratedDevice& device, const std::string& name, const 
     std::printf("  stands at       (%.3f, %.3f, %.3f) m in the device's frame\n", place[3], place[4], place[5]);
 }
 
-void calibrateDevice(const DeviceCaptureArguments& arguments, const Session& session) {
+void calibrateDevice(const DeviceCaptureArguments& arguments, const std::string& folder, bool json,
+                     const Session& session) {
     const std::vector<NamedOrder> orders = ordersOf(arguments);
     const Rig rig = readRig(arguments.rig);
     constexpr double kReading = 0.5; // of the whole time
@@ -63,9 +63,9 @@ void calibrateDevice(const DeviceCaptureArguments& arguments, const Session& ses
     std::vector<NamedDevice> projectors;
     projectors.reserve(orders.size());
     for (const NamedOrder& order : orders) projectors.push_back({order.name, order.order.projector});
-    DeviceCalibration result = orRefused(arguments.json, [&] {
+    DeviceCalibration result = orRefused(json, [&] {
         const Progress progress = session.progress();
-        capture = readDeviceCapture(arguments.folder, rig.actuatorCount(), orders, progress.part(0.0, kReading));
+        capture = readDeviceCapture(folder, rig.actuatorCount(), orders, progress.part(0.0, kReading));
         return calibrateOnDevice(rig, capture.shots, capture.cameras, projectors, {}, progress.part(kReading, 1.0));
     });
     Session::endProgress();
@@ -78,7 +78,7 @@ void calibrateDevice(const DeviceCaptureArguments& arguments, const Session& ses
             use("projectors", result.projectors[i], projectors[i].name, result.state.projectors[i].fromWorld,
                 result.sigma.projectors[i].fromWorld);
     };
-    if (arguments.json) {
+    if (json) {
         nlohmann::json all = {{"rms", result.rms}, {"onDevice", result.onDevice}};
         all["warnings"] = jsonOf(result.warnings);
         each([&](const char* kind, const auto& device, const auto& name, const auto& pose, const auto& sigma) {
@@ -97,25 +97,20 @@ void calibrateDevice(const DeviceCaptureArguments& arguments, const Session& ses
 
 } // namespace
 
-void addCalibrateDevice(CLI::App& group, Session& session) {
+FolderCommand addDeviceFolder(CLI::App& command, const Session& session) {
     auto arguments = std::make_shared<DeviceCaptureArguments>();
-    CLI::App* command = group.add_subcommand(
-        "device", "Cameras and projectors without a board, from patterns on the device at rest and raised");
+    command.add_option("--rig", arguments->rig, "Of a folder: the device's rig");
     command
-        ->add_option("folder", arguments->folder,
-                     "A folder with one folder for each shot (its images, or CAMERA/PROJECTOR/images where there are "
-                     "several) and states.csv: a line a shot, its folder and the actuators' strokes from 0 to 1")
-        ->required();
-    command->add_option("--rig", arguments->rig, "The device's rig")->required();
-    command
-        ->add_option("--projector", arguments->projectors,
-                     "A projector's size in pixels, such as 1024x768; of several, each as NAME=1024x768")
-        ->required()
+        .add_option("--projector", arguments->projectors,
+                    "Of a folder: a projector's size in pixels, such as 1024x768; of several, each as NAME=1024x768")
         ->expected(1)
         ->take_all();
-    arguments->patterns.addTo(*command);
-    command->add_flag("--json", arguments->json, "Print one JSON value");
-    command->callback([arguments, &session] { calibrateDevice(*arguments, session); });
+    arguments->patterns.addTo(command);
+    return [arguments, &session](const std::string& folder, bool json) {
+        if (arguments->rig.empty()) throw CLI::RequiredError("--rig");
+        if (arguments->projectors.empty()) throw CLI::RequiredError("--projector");
+        calibrateDevice(*arguments, folder, json, session);
+    };
 }
 
 } // namespace lumorph::cli

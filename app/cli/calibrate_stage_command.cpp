@@ -16,8 +16,8 @@
 #include "core/base/resources.h"
 #include "core/show/project_contents.h"
 
-// The stages of a calibration that follow projector and camera, one command each: recorded in the virtual lab or at the
-// table, or solved from a recording.
+// The stages of a calibration, one command each: recorded in the virtual lab or at the table, or solved from a
+// recording. Some also read a folder of pictures, for which no project is needed.
 
 namespace lumorph::cli {
 
@@ -37,8 +37,13 @@ struct StageArguments {
 /// What a stage has beside what all have.
 struct StageHelp {
     const char *key, *help, *faults;
+    FolderCommand (*addFolder)(CLI::App& command, const Session& session) = nullptr;
 };
 constexpr StageHelp kHelp[] = {
+    {"room", "Several cameras and projectors together, by patterns on a board", "pushed", addRoomFolder},
+    {"mirror", "A projector whose light the camera sees only in a mirror", "", addMirrorFolder},
+    {"device", "Camera and projectors without a board, by patterns on the device at rest and raised", "",
+     addDeviceFolder},
     {"light", "How much light values make, black, and bare colours, by photographs of flat light",
      "saturated, dark, automatic, ambient, falling or unseen"},
     {"pointer", "Where the tip of the tracked pointer is, by swings about it", nullptr},
@@ -91,8 +96,9 @@ public:
 };
 
 Installation trueRoomOf(const StageArguments& arguments, const CalibrationStage& stage, const StageSite& site) {
-    if (stage.key != std::string_view("verify")) return trueRoom(site.room, site.rig->actuators(), arguments.seed);
-    // A check asks what has moved since: else all is as it was.
+    const std::string_view key = stage.key;
+    if (key != "verify" && key != "device") return trueRoom(site.room, site.rig->actuators(), arguments.seed);
+    // A check asks what has moved since, and by the device only what is known can be measured: else all is as it was.
     Installation truth = withLabCamera(site.room);
     std::uint32_t seed = arguments.seed;
     for (const std::string& text : arguments.moved)
@@ -207,11 +213,21 @@ void run(const StageArguments& arguments, const CalibrationStage& stage, const S
         throw DataError("check of the room", check->check.obstacle->why, check->check.obstacle->remedy);
 }
 
+/// Else it is a folder of pictures.
+bool isProject(const std::string& text) { return text.starts_with("resource:") || text.ends_with(".lumorph"); }
+
 void addStage(CLI::App& group, const StageHelp& help, Session& session) {
     auto arguments = std::make_shared<StageArguments>();
     const std::string_view key = help.key;
     CLI::App* command = group.add_subcommand(help.key, help.help);
-    command->add_option("project", arguments->project, "A project, or resource:projects/NAME.lumorph")->required();
+    FolderCommand readFolder;
+    if (help.addFolder) readFolder = help.addFolder(*command, session);
+    command
+        ->add_option("project", arguments->project,
+                     help.addFolder ? "A project, or resource:projects/NAME.lumorph; or a folder of pictures, as the "
+                                      "guide's chapter on the command line has it"
+                                    : "A project, or resource:projects/NAME.lumorph")
+        ->required();
     CLI::Option* lab = command->add_flag("--lab", arguments->inLab, "Record in the virtual lab; as without a way");
     CLI::Option* table =
         command->add_flag("--table", arguments->atTable, "Record with what is connected to this machine");
@@ -222,11 +238,12 @@ void addStage(CLI::App& group, const StageHelp& help, Session& session) {
     command->add_option("--seed", arguments->seed, "Another lab and other noise for another number")
         ->excludes(table)
         ->excludes(from);
-    command
-        ->add_option("--fault", arguments->fault,
-                     "What is wrong in the lab: " + (help.faults ? std::string(help.faults) : trackerFaultKeys()))
-        ->excludes(table)
-        ->excludes(from);
+    if (!help.faults || *help.faults != 0)
+        command
+            ->add_option("--fault", arguments->fault,
+                         "What is wrong in the lab: " + (help.faults ? std::string(help.faults) : trackerFaultKeys()))
+            ->excludes(table)
+            ->excludes(from);
     command->add_option("--record", arguments->record, "Keep what devices said in a new folder, to solve it again");
     if (key == "light")
         command->add_flag("--without-sheet", arguments->withoutSheet, "No sheet of white paper lies beside the device")
@@ -248,7 +265,10 @@ void addStage(CLI::App& group, const StageHelp& help, Session& session) {
     }
     arguments->apply.addTo(*command, "Write what it came to into the project's installation");
     command->add_flag("--json", arguments->json, "Print one JSON value");
-    command->callback([arguments, key, &session] { run(*arguments, calibrationStage(key), session); });
+    command->callback([arguments, key, readFolder, &session] {
+        if (readFolder && !isProject(arguments->project)) return readFolder(arguments->project, arguments->json);
+        run(*arguments, calibrationStage(key), session);
+    });
 }
 
 } // namespace

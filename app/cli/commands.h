@@ -1,5 +1,8 @@
 #pragma once
 
+#include <functional>
+#include <string>
+
 #include <CLI/App.hpp>
 
 #include "app/cli/session.h"
@@ -23,11 +26,14 @@ void addDemoCommand(CLI::App& app, const Session& session);
 void addRecordingCommands(CLI::App& app);
 void addRenderCommand(CLI::App& app, Session& session);
 void addCalibrateCommands(CLI::App& app, Session& session);
-/// Adds those of several cameras and projectors, and of a mirror, to the group of the others.
-void addCalibrateRoomCommands(CLI::App& group, Session& session);
+/// What a command does with a folder of pictures in place of a project.
+using FolderCommand = std::function<void(const std::string& folder, bool json)>;
+/// Each adds what its kind of folder needs to the command of its stage.
+[[nodiscard]] FolderCommand addRoomFolder(CLI::App& command, const Session& session);
+[[nodiscard]] FolderCommand addMirrorFolder(CLI::App& command, const Session& session);
+[[nodiscard]] FolderCommand addDeviceFolder(CLI::App& command, const Session& session);
 /// Into the group of the calibrate commands.
 void addCalibrateBudget(CLI::App& group, Session& session);
-void addCalibrateDevice(CLI::App& group, Session& session);
 void addCalibrateStages(CLI::App& group, Session& session);
 void addCalibrateTracking(CLI::App& group, Session& session);
 void addLabCommands(CLI::App& app, Session& session);

@@ -31,6 +31,47 @@ void print(const Registration& result) {
     printFindings(result.warnings);
 }
 
+nlohmann::json heldOutJson(const HeldOutLight& light) {
+    if (light.points == 0) return {};
+    return {{"medianMm", 1e3 * light.median},
+            {"p95Mm", 1e3 * light.most},
+            {"medianPixels", light.medianPixels},
+            {"p95Pixels", light.mostPixels},
+            {"points", light.points}};
+}
+
+nlohmann::json figuresOf(const PlacedDevices& result) {
+    nlohmann::json devices = nlohmann::json::array();
+    for (const PlacedDevices::Device& device : result.devices) {
+        nlohmann::json json = {{"name", device.name},
+                               {"kind", device.isProjector ? "projector" : "camera"},
+                               {"rms", device.rms},
+                               {"sigma", {{"focal", device.focalSigma}, {"mm", 1e3 * device.shiftSigma}}}};
+        if (device.isProjector) json["heldOut"] = heldOutJson(device.heldOut);
+        devices.push_back(std::move(json));
+    }
+    nlohmann::json json = {{"good", result.good()},
+                           {"summary", result.summary},
+                           {"rms", result.rms},
+                           {"devices", devices},
+                           {"heldOut", heldOutJson(result.heldOut)},
+                           {"warnings", jsonOf(result.warnings)}};
+    json["refused"] = result.refusal ? jsonOf(*result.refusal) : nlohmann::json();
+    return json;
+}
+
+void print(const PlacedDevices& result) {
+    std::printf("%s\n", result.summary.c_str());
+    for (const PlacedDevices::Device& device : result.devices) {
+        std::printf("  %-18s %.3f pixels, focal length +- %.2f pixels, place +- %.2f mm", device.name.c_str(),
+                    device.rms, device.focalSigma, 1e3 * device.shiftSigma);
+        if (device.isProjector && device.heldOut.points > 0)
+            std::printf("; held out %.2f pixels", device.heldOut.medianPixels);
+        std::printf("\n");
+    }
+    printFindings(result.warnings);
+}
+
 nlohmann::json colorJson(const glm::vec3& color) { return {color.r, color.g, color.b}; }
 
 nlohmann::json freshJson(const FreshLight& fresh) {

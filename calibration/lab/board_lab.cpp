@@ -371,17 +371,20 @@ BoardLab::BoardLab(BoardLab&&) noexcept = default;
 BoardLab& BoardLab::operator=(BoardLab&&) noexcept = default;
 
 std::vector<glm::dmat4> BoardLab::proposePoses(int count) const {
-    std::vector<glm::dmat4> poses;
-    const auto refuse = [] {
+    std::vector<glm::dmat4> poses = possiblePoses(count);
+    if (static_cast<int>(poses.size()) < count)
         throw InvalidInput("board in the lab", "it does not fit into what camera and projector both see",
                            "use a smaller board, or move camera and projector away");
-    };
-    if (count > 0 && !data_->isSeen(data_->flatPose())) refuse();
+    return poses;
+}
+
+std::vector<glm::dmat4> BoardLab::possiblePoses(int count) const {
+    std::vector<glm::dmat4> poses;
+    if (!data_->isSeen(data_->flatPose())) return poses;
     for (int i = 0; i < count; ++i) {
         std::mt19937 dice(data_->seed * 7919U + static_cast<std::uint32_t>(i));
         const auto pose = i == 0 ? data_->flatPose() : data_->tiltedPose(i, dice);
-        if (!pose) refuse();
-        poses.push_back(*pose);
+        if (pose) poses.push_back(*pose);
     }
     return poses;
 }

@@ -57,6 +57,8 @@ public:
     /// can tell where the world is; the others tilted by 15 to 40 degrees to all sides, over the lit place. The same
     /// for the same seed; a longer list begins as a shorter one. Throws InvalidInput where the board does not fit.
     [[nodiscard]] std::vector<glm::dmat4> proposePoses(int count) const;
+    /// The same, without those of so many for which there is no place.
+    [[nodiscard]] std::vector<glm::dmat4> possiblePoses(int count) const;
 
     /// Lays the board there; before the first call there is none. Throws InvalidInput for a matrix that is no rotation
     /// and translation.

@@ -16,6 +16,8 @@ namespace {
 
 } // namespace
 
+BoardsCapture Bench::recordBoards(const StageSite&, const Progress&) { lacksCamera(); }
+MirrorCapture Bench::recordMirror(const StageSite&, const Progress&) { lacksCamera(); }
 PointerCapture Bench::recordPointer(const StageSite&, const Progress&) { lacksTracker(); }
 DotCapture Bench::recordDots(const StageSite&, const Progress&) { lacksTracker(); }
 LandmarkCapture Bench::recordLandmarks(const StageSite&, const Progress&) { lacksTracker(); }

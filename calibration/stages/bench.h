@@ -7,6 +7,7 @@
 
 #include "calibration/capture/device_bench.h"
 #include "calibration/delays/delays_calibration.h"
+#include "calibration/doctor/boards_capture.h"
 #include "calibration/lab/registration_lab.h"
 #include "calibration/light/light_bench.h"
 #include "calibration/light/light_patches.h"
@@ -33,6 +34,10 @@ public:
     [[nodiscard]] virtual std::optional<Installation> truth() const { return std::nullopt; }
     /// By which plans choose what may be chosen anyhow.
     [[nodiscard]] virtual std::uint32_t planSeed() const { return 1; }
+
+    // With a printed board in somebody's hand, cameras and projectors.
+    [[nodiscard]] virtual BoardsCapture recordBoards(const StageSite& site, const Progress& progress);
+    [[nodiscard]] virtual MirrorCapture recordMirror(const StageSite& site, const Progress& progress);
 
     // With a tracked pointer in somebody's hand.
     [[nodiscard]] virtual PointerCapture recordPointer(const StageSite& site, const Progress& progress);

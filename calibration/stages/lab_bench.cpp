@@ -16,6 +16,8 @@ LabBenchOptions labWithFault(std::string_view stage, std::string_view fault) {
         options.servos.fault = parseServoFault(fault);
     else if (stage == "delays")
         options.delays.fault = parseDelayFault(fault);
+    else if (stage == "room" && fault == "pushed")
+        options.boards.push = 0.004;
     else if (stage == "pointer" || stage == "tracker" || stage == "body" || stage == "eye")
         options.touches.fault = parseTrackerFault(fault);
     else
@@ -31,6 +33,17 @@ LabBench::~LabBench() = default;
 
 RecordingSource LabBench::source() const {
     return {RecordingSource::Kind::lab, "virtual lab, seed " + std::to_string(seed_), utcDate(), seed_};
+}
+
+BoardsCapture LabBench::recordBoards(const StageSite&, const Progress& progress) {
+    truth_ = labRoomTruth(std::move(truth_));
+    return captureBoardsInLab(truth_, seed_, options_.boards, progress);
+}
+
+MirrorCapture LabBench::recordMirror(const StageSite&, const Progress& progress) {
+    LabMirror mirror;
+    truth_ = mirrorRoomTruth(labRoomTruth(std::move(truth_)), mirror);
+    return captureMirrorInLab(truth_, mirror, seed_, options_.boards, progress);
 }
 
 PointerCapture LabBench::recordPointer(const StageSite&, const Progress& progress) {

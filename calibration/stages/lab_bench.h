@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "calibration/delays/delays_lab.h"
+#include "calibration/lab/boards_lab.h"
 #include "calibration/light/light_lab.h"
 #include "calibration/servos/servo_lab.h"
 #include "calibration/stages/bench.h"
@@ -16,6 +17,7 @@ namespace lumorph {
 
 /// How things are in the lab, by what is measured.
 struct LabBenchOptions {
+    BoardsLabOptions boards;
     RegistrationLabOptions touches;
     LightLabOptions light;
     ServoLabOptions servos;
@@ -37,6 +39,8 @@ public:
     [[nodiscard]] RecordingSource source() const override;
     [[nodiscard]] std::optional<Installation> truth() const override { return truth_; }
     [[nodiscard]] std::uint32_t planSeed() const override { return seed_; }
+    [[nodiscard]] BoardsCapture recordBoards(const StageSite& site, const Progress& progress) override;
+    [[nodiscard]] MirrorCapture recordMirror(const StageSite& site, const Progress& progress) override;
     [[nodiscard]] PointerCapture recordPointer(const StageSite& site, const Progress& progress) override;
     [[nodiscard]] DotCapture recordDots(const StageSite& site, const Progress& progress) override;
     [[nodiscard]] LandmarkCapture recordLandmarks(const StageSite& site, const Progress& progress) override;

@@ -16,7 +16,8 @@ template <class... Cases> struct Overloaded : Cases... { using Cases::operator()
 template <class... Cases> Overloaded(Cases...) -> Overloaded<Cases...>;
 
 Installation& roomIn(StageResult& result) {
-    return std::visit(Overloaded{[](Registration& of) -> Installation& { return of.installation; },
+    return std::visit(Overloaded{[](PlacedDevices& of) -> Installation& { return of.room; },
+                                 [](Registration& of) -> Installation& { return of.installation; },
                                  [](LightCalibration& of) -> Installation& { return of.room; },
                                  [](ServoMeasurement& of) -> Installation& { return of.room; },
                                  [](MeasuredDelays& of) -> Installation& { return of.installation; },
@@ -39,7 +40,8 @@ void markResult(const Installation& before, StageResult& result, const Recording
 const Installation& roomOf(const StageResult& result) { return roomIn(const_cast<StageResult&>(result)); }
 
 bool isGood(const StageResult& result) {
-    return std::visit(Overloaded{[](const Registration& of) { return of.good(); },
+    return std::visit(Overloaded{[](const PlacedDevices& of) { return of.good(); },
+                                 [](const Registration& of) { return of.good(); },
                                  [](const LightCalibration& of) { return of.good(); },
                                  [](const ServoMeasurement& of) { return of.measured.usable; },
                                  [](const MeasuredDelays& of) { return of.good(); },
@@ -48,7 +50,8 @@ bool isGood(const StageResult& result) {
 }
 
 std::optional<Finding> refusalOf(const StageResult& result) {
-    return std::visit(Overloaded{[](const Registration& of) { return of.refusal; },
+    return std::visit(Overloaded{[](const PlacedDevices& of) { return of.refusal; },
+                                 [](const Registration& of) { return of.refusal; },
                                  [](const LightCalibration& of) { return of.refusal; },
                                  [](const ServoMeasurement&) { return std::optional<Finding>(); },
                                  [](const MeasuredDelays& of) { return of.refusal; },
@@ -58,8 +61,9 @@ std::optional<Finding> refusalOf(const StageResult& result) {
 
 const std::vector<CalibrationStage>& calibrationStages() {
     static const std::vector<CalibrationStage> rows{
-        stages::lightStage(), stages::pointerStage(), stages::trackerStage(), stages::deviceStage(),
-        stages::eyeStage(),   stages::servosStage(),  stages::delaysStage(),  stages::checkStage()};
+        stages::roomStage(),    stages::mirrorStage(),  stages::deviceStage(), stages::lightStage(),
+        stages::pointerStage(), stages::trackerStage(), stages::bodyStage(),   stages::eyeStage(),
+        stages::servosStage(),  stages::delaysStage(),  stages::checkStage()};
     return rows;
 }
 

@@ -8,14 +8,17 @@
 #include "calibration/light/light_calibration.h"
 #include "calibration/servos/servo_measurement.h"
 #include "calibration/stages/bench.h"
+#include "calibration/stages/placed_devices.h"
 #include "calibration/verify/room_verification.h"
 
-/// The stages of a calibration that follow projector and camera: recorded by whatever bench, solved from what was
-/// recorded. Whoever adds one writes a row, and what it calls in a file beside it (CONTRIBUTING.md has the recipe).
+/// The stages of a calibration beside the sequence of one projector and camera: recorded by whatever bench, solved from
+/// what was recorded. Whoever adds one writes a row, and what it calls in a file beside it (CONTRIBUTING.md has the
+/// recipe).
 namespace lumorph {
 
 /// What a stage came to, by its kind.
-using StageResult = std::variant<Registration, LightCalibration, ServoMeasurement, MeasuredDelays, VerifiedRoom>;
+using StageResult =
+    std::variant<Registration, PlacedDevices, LightCalibration, ServoMeasurement, MeasuredDelays, VerifiedRoom>;
 
 /// The room with what a result measured, and as it was believed where it was refused.
 [[nodiscard]] const Installation& roomOf(const StageResult& result);

@@ -5,10 +5,13 @@
 /// Private to calibration/stages: the row of each stage, in the file of its kind, and what they share.
 namespace lumorph::stages {
 
+[[nodiscard]] CalibrationStage roomStage();
+[[nodiscard]] CalibrationStage mirrorStage();
+[[nodiscard]] CalibrationStage deviceStage();
 [[nodiscard]] CalibrationStage lightStage();
 [[nodiscard]] CalibrationStage pointerStage();
 [[nodiscard]] CalibrationStage trackerStage();
-[[nodiscard]] CalibrationStage deviceStage();
+[[nodiscard]] CalibrationStage bodyStage();
 [[nodiscard]] CalibrationStage eyeStage();
 [[nodiscard]] CalibrationStage servosStage();
 [[nodiscard]] CalibrationStage delaysStage();
@@ -20,6 +23,20 @@ namespace lumorph::stages {
 /// The room with the camera that a recording was made by: of a lab's, without a camera in the room, the lab's own.
 /// Throws InvalidInput where there is none.
 [[nodiscard]] Installation roomWithCamera(const StageSite& site, const RecordingSource& source);
+
+/// Takes over lenses and places of projectors and cameras, with those that the room did not have.
+void applyPlaces(const Installation& measured, Installation& room);
+/// Origin of the first projector's place, where a method whose name begins so measured it; else null.
+[[nodiscard]] const Origin* originByMethod(const Installation& room, std::string_view method);
+/// A rotation and a translation as a matrix.
+[[nodiscard]] glm::dmat4 matrixOf(const PoseVector& pose);
+/// The middle and nearly the worst of how far light lies beside.
+struct LightBeside {
+    double pixels = 0.0, metres = 0.0;
+};
+[[nodiscard]] HeldOutLight heldOutOf(std::vector<LightBeside> all);
+/// Refuses what held-out light contradicts, says where there was none, and sums up.
+void judgePlaces(PlacedDevices& result);
 
 /// Decoded light as a table of camera and projector pixels, with the number of the look as its first column.
 inline const std::vector<std::string> kLightColumns{"look", "camera_column", "camera_row", "light_column", "light_row"};

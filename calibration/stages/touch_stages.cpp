@@ -256,7 +256,7 @@ CalibrationStage stages::trackerStage() {
     return stage;
 }
 
-CalibrationStage stages::deviceStage() {
+CalibrationStage stages::bodyStage() {
     CalibrationStage stage;
     stage.key = "body";
     stage.title = "Device on its body";

@@ -10,7 +10,7 @@
 #include <opencv2/calib3d.hpp>
 #include <opencv2/imgproc.hpp>
 
-#include "calibration/lab/board_lab.h"
+#include "calibration/lab/boards_lab.h"
 #include "calibration/lab/lab_capture.h"
 #include "core/base/clock.h"
 #include "core/base/error.h"
@@ -213,29 +213,6 @@ private:
 };
 
 } // namespace
-
-Installation labTruth(const Installation& room, std::size_t number) {
-    Installation truth = defaultInstallation();
-    InstalledProjector& projector = truth.projectors.front();
-    if (number < room.projectors.size())
-        projector.camera = withSize(projector.camera, room.projectors[number].camera.size);
-    // Each further projector stands a quarter of the way round the table from the one before it.
-    const glm::dmat4 aside =
-        glm::rotate(glm::dmat4(1.0), 90.0 * kRadians * static_cast<double>(number), glm::dvec3(0.0, 1.0, 0.0));
-    projector.camera.cameraFromWorld *= aside;
-    const glm::dvec3 position = positionOf(projector.camera) + glm::dvec3(0.03, -0.04, 0.02);
-    glm::dmat4 turned = projector.camera.cameraFromWorld;
-    turned = glm::rotate(glm::dmat4(1.0), 0.4 * kRadians, glm::dvec3(0.3, 1.0, 0.4)) * turned;
-    turned[3] = glm::dvec4(-(glm::dmat3(turned) * position), 1.0);
-    projector.camera.cameraFromWorld = turned;
-    projector.camera.focal *= 1.01;
-    truth.cameras.resize(1);
-    // Half as many pixels again as the projector, so that it resolves the finest stripes; up to what is worked out
-    // quickly.
-    const int width = std::clamp(projector.camera.size.x * 3 / 2, 320, kLabCameraWidth);
-    truth.cameras.front().camera = withSize(defaultLabCamera(projector.camera), {width, width * 4 / 5});
-    return truth;
-}
 
 std::optional<double> lightError(const CalibratedCamera& believed, const CalibratedCamera& truth, double side) {
     constexpr int kSteps = 9;

@@ -43,10 +43,6 @@ public:
     std::mutex mutex;
 };
 
-/// The lab's camera and one projector of the room as they truly are: as somebody has put them up, near where rooms have
-/// their first projector, or for another number to the side of it, and with another zoom.
-[[nodiscard]] Installation labTruth(const Installation& room, std::size_t projector = 0);
-
 /// The virtual lab: a board before a projector that stands a little aside from where `room` has it. Takes a second or
 /// two. Throws InvalidInput where the board does not fit.
 [[nodiscard]] std::shared_ptr<CaptureBench> openLabBench(const CalibrationSetup& setup, const Installation& room,

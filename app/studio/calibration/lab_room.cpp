@@ -1,6 +1,7 @@
 #include "app/studio/calibration/lab_room.h"
 
 #include "app/studio/calibration/capture_bench.h"
+#include "calibration/lab/boards_lab.h"
 #include "calibration/lab/true_room.h"
 
 namespace lumorph::studio {
