@@ -240,4 +240,11 @@ std::unique_ptr<CaptureCamera> openVideo(const std::filesystem::path& file) { re
 
 std::unique_ptr<CaptureCamera> openLabCamera(BoardLab& lab) { return std::make_unique<LabCamera>(lab); }
 
+cv::Mat greyOf(const cv::Mat& picture) {
+    if (picture.channels() == 1) return picture;
+    cv::Mat grey;
+    cv::cvtColor(picture, grey, cv::COLOR_BGR2GRAY);
+    return grey;
+}
+
 } // namespace lumorph

@@ -39,6 +39,9 @@ public:
     [[nodiscard]] virtual std::vector<std::string> automatics() const { return {}; }
 };
 
+/// A picture of a camera as 8-bit grey.
+[[nodiscard]] cv::Mat greyOf(const cv::Mat& picture);
+
 /// A camera of this machine, "/dev/video0", in the largest size that is at most `most` (empty: what it gives by
 /// itself). Exposure, white balance, focus and gain are fixed where they are, as far as the driver allows. Throws
 /// DeviceError with what to do.

@@ -26,13 +26,6 @@ constexpr int kStillFrames = 2;         // complete ones in a row end a switch
 constexpr double kIncomplete = 0.04;    // of the change; below, it is seen completely
 constexpr double kLeastContrast = 10.0; // grey levels
 
-cv::Mat greyOf(const cv::Mat& picture) {
-    if (picture.channels() == 1) return picture;
-    cv::Mat grey;
-    cv::cvtColor(picture, grey, cv::COLOR_BGR2GRAY);
-    return grey;
-}
-
 cv::Mat flat(cv::Size size, bool white) { return {size, CV_8U, cv::Scalar(white ? 255 : 0)}; }
 
 /// Gives the screen back whatever happens.

@@ -402,9 +402,9 @@ CalibrationStage roomStage() {
     stage.key = "room";
     stage.title = "All projectors and cameras";
     stage.measure = [](const StageSite& site, Bench& bench, const Progress& progress) {
-        return solvedBoards(
-            recordingOf(bench.recordBoards(site, progress.part(0.0, 0.8)), emptyRecording("room", site, bench)),
-            calibrationStage("room"), site, progress);
+        const auto capture = bench.recordBoards(site, progress.part(0.0, 0.8));
+        return solvedBoards(recordingOf(capture, stages::emptyRecording("room", site, bench)), calibrationStage("room"),
+                            site, progress);
     };
     stage.solve = solveRoom;
     stage.apply = stages::applyPlaces;
@@ -427,9 +427,9 @@ CalibrationStage mirrorStage() {
     stage.key = "mirror";
     stage.title = "Projector in a mirror";
     stage.measure = [](const StageSite& site, Bench& bench, const Progress& progress) {
-        return solvedBoards(
-            recordingOf(bench.recordMirror(site, progress.part(0.0, 0.8)), emptyRecording("mirror", site, bench)),
-            calibrationStage("mirror"), site, progress);
+        const auto capture = bench.recordMirror(site, progress.part(0.0, 0.8));
+        return solvedBoards(recordingOf(capture, stages::emptyRecording("mirror", site, bench)),
+                            calibrationStage("mirror"), site, progress);
     };
     stage.solve = solveMirror;
     stage.apply = stages::applyPlaces;

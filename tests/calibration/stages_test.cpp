@@ -31,8 +31,13 @@ struct StageRoom {
     explicit StageRoom(const std::string& stage, std::uint32_t seed) {
         CalibratedCamera& lamp = site.room.projectors.front().camera;
         lamp = withSize(lamp, {480, 270});
-        truth = stage == "verify" ? pushed(site.room, *site.rig, {"projector", 3e-3, 0.0}, seed)
-                                  : trueRoom(site.room, site.rig->actuators(), seed);
+        if (stage == "room") {
+            site.room.projectors.push_back(site.room.projectors.front());
+            site.room.projectors.back().name = "Side";
+        }
+        truth = stage == "verify"   ? pushed(site.room, *site.rig, {"projector", 3e-3, 0.0}, seed)
+                : stage == "device" ? site.room // its servos do what they are told
+                                    : trueRoom(site.room, site.rig->actuators(), seed);
         site.room.pointerTip = truth.pointerTip;
         site.room.worldFromTracker = truth.worldFromTracker;
     }
@@ -67,6 +72,10 @@ std::vector<double> numbersOf(const StageResult& result) {
         add({of->rms, of->turnSigma, of->shiftSigma, of->fresh.rms, of->fresh.worst});
         for (const PointError& point : of->points) add({point.metres});
         for (const PointError& point : of->fresh.points) add({point.metres});
+    } else if (const auto* places = std::get_if<PlacedDevices>(&result)) {
+        add({places->rms, places->heldOut.median, places->heldOut.most});
+        for (const PlacedDevices::Device& device : places->devices)
+            add({device.rms, device.focalSigma, device.shiftSigma, device.heldOut.medianPixels});
     } else if (const auto* light = std::get_if<LightCalibration>(&result)) {
         add({light->fresh.median, light->fresh.most, light->before.median, light->responseRms, light->ambient,
              double(light->photographs)});
@@ -151,12 +160,50 @@ TEST_P(StagesTest, RefuseWhatIsDamagedCutShortOrOfSomethingElseByItsName) {
 }
 
 INSTANTIATE_TEST_SUITE_P(All, StagesTest,
-                         ::testing::Values("light", "pointer", "tracker", "body", "eye", "servos", "delays", "verify"),
+                         ::testing::Values("room", "mirror", "device", "light", "pointer", "tracker", "body", "eye",
+                                           "servos", "delays", "verify"),
                          [](const auto& of) { return std::string(of.param); });
 
+/// Millimetres by which light that is meant for points of table and device falls beside them.
+double worstLight(const CalibratedCamera& found, const CalibratedCamera& truth) {
+    double worst = 0.0;
+    for (const double x : {-0.1, 0.0, 0.1})
+        for (const double z : {-0.1, 0.0, 0.1})
+            for (const double y : {0.0, 0.1}) {
+                const glm::dvec3 point(x, y, z);
+                const auto meant = pixelOf(found, point);
+                if (!meant) return HUGE_VAL;
+                // Where that pixel's ray truly passes the point.
+                const glm::dvec3 from = positionOf(truth), way = directionOf(truth, *meant);
+                worst = std::max(worst, glm::length(glm::cross(point - from, way)));
+            }
+    return 1e3 * worst;
+}
+
+TEST(StagePlaces, TwoProjectorsAndTheMirrorAreFoundWhereTheyTrulyStand) {
+    for (const auto& [key, most] : {std::pair("room", 0.5), {"mirror", 1.0}, {"device", 0.5}}) {
+        const MeasuredStage& measured = keptOf(key).measured;
+        const auto& places = std::get<PlacedDevices>(measured.result);
+        ASSERT_TRUE(places.good()) << sentenceOf(*places.refusal);
+        const Installation& truth = measured.recording.truth.value();
+        for (std::size_t k = 0; k < truth.projectors.size(); ++k) {
+            const double beside = worstLight(places.room.projectors[k].camera, truth.projectors[k].camera);
+            std::printf("%s, projector %zu: %.2f mm beside at worst; held out %.2f mm (median), %.2f px\n", key, k + 1,
+                        beside, 1e3 * places.heldOut.median, places.heldOut.medianPixels);
+            EXPECT_LT(beside, most) << key;
+        }
+        EXPECT_GE(places.heldOut.points, 3U);
+        const StageRoom room(key, 11);
+        if (std::string(key) == "device") continue; // it stands as believed; only the stage does not know
+        EXPECT_GT(worstLight(room.site.room.projectors.back().camera, truth.projectors.back().camera), 5.0)
+            << "what was believed is far from it";
+    }
+}
+
 TEST(StageRefusals, AreTheSameOnceTheyAreSolvedFromTheRecording) {
-    constexpr std::pair<const char*, const char*> kFaults[] = {
-        {"light", "saturated"}, {"light", "dark"}, {"light", "ambient"}, {"delays", "covered"}, {"delays", "still"}};
+    constexpr std::pair<const char*, const char*> kFaults[] = {{"light", "saturated"}, {"light", "dark"},
+                                                               {"light", "ambient"},   {"delays", "covered"},
+                                                               {"delays", "still"},    {"room", "pushed"}};
     for (const auto& [key, fault] : kFaults) {
         const StageRoom room(key, 7);
         LabBench bench(*room.site.rig, room.truth, 7, labWithFault(key, fault));

@@ -26,13 +26,6 @@ constexpr double kRadians = std::numbers::pi / 180.0;
 
 std::string poseName(int pose) { return "pose_" + std::to_string(pose + 1); }
 
-cv::Mat greyOf(cv::Mat picture) {
-    if (picture.channels() == 1) return picture;
-    cv::Mat grey;
-    cv::cvtColor(picture, grey, cv::COLOR_BGR2GRAY);
-    return grey;
-}
-
 cv::Mat whiteOf(cv::Size size) { return {size, CV_8U, cv::Scalar(255)}; }
 
 /// The lab has a time of its own: a picture takes a tenth of a second, however long it takes to work it out.

@@ -41,6 +41,14 @@ LinkStand ownStand(const ChainLink& link, const Installation& room, const LastCh
             measuredText(*origin)};
 }
 
+bool isWantedIn(const ChainLink& link, const Installation& room) { return !link.isWanted || link.isWanted(room); }
+
+/// Where several projectors are measured together, what builds on one of them builds on that.
+LinkId needIn(LinkId need, const Installation& room) {
+    const bool isTogether = need == LinkId::projector && isWantedIn(chainLinks()[placeOf(LinkId::room)], room);
+    return isTogether ? LinkId::room : need;
+}
+
 std::string dateOf(const ChainLink& link, const Installation& room, const LastCheck& checked) {
     if (isCheck(link)) return checked.date;
     const Origin* origin = originOf(link, room);
@@ -54,7 +62,15 @@ std::vector<LinkStand> standsOf(const Installation& room, const LastCheck& check
     std::vector<LinkStand> stands;
     for (const ChainLink& link : links) {
         LinkStand stand = ownStand(link, room, checked);
-        for (const LinkId need : link.needs) {
+        if (stand.how == LinkStand::How::open && needIn(link.id, room) != link.id)
+            stand = {LinkStand::How::spare, QObject::tr("one alone; the next measures all together")};
+        if (!isWantedIn(link, room)) {
+            if (stand.how == LinkStand::How::open || link.id == LinkId::room) stand = {LinkStand::How::spare, {}};
+            stands.push_back(std::move(stand));
+            continue;
+        }
+        for (const LinkId own : link.needs) {
+            const LinkId need = needIn(own, room);
             const std::size_t place = placeOf(need);
             const LinkStand::How before = stands[place].how;
             if (stand.how == LinkStand::How::open &&

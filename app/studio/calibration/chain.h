@@ -20,7 +20,7 @@
 /// The whole chain from boxes to a calibrated show: what is measured one after the other, and where it stands.
 namespace lumorph::studio {
 
-enum class LinkId { projector, light, pointer, tracker, device, eye, servos, delays, check };
+enum class LinkId { projector, room, light, pointer, tracker, device, eye, servos, delays, check, mirror, deviceAlone };
 
 /// A figure of a measurement, as it is read.
 struct LinkFigure {
@@ -71,6 +71,8 @@ struct ChainLink {
     std::vector<QString> how; ///< what will happen and what one does, a sentence each
     QString warning;          ///< in large letters; empty: none
     std::vector<LinkId> needs;
+    /// Whether a room is measured by it in its turn; null: any. Others are there to be chosen.
+    bool (*isWanted)(const Installation& room) = nullptr;
     /// Its row among the stages, which records, solves and applies it; null: the link has a sequence of its own.
     const CalibrationStage* stage = nullptr;
     std::vector<LinkFile> files; ///< of a tracker's own recordings, in place of one of ours; all of them are needed
@@ -81,6 +83,7 @@ struct ChainLink {
     /// The steps of it. Throws InvalidInput for a room in which there is nothing to touch.
     std::vector<LiveStep> (*liveSteps)(const Rig& rig, const Installation& room) = nullptr;
     bool isOnTable = false; ///< it can be measured with the camera and projectors that are connected
+    QString onTable;        ///< what is to be known of that, in a sentence; may be empty
     bool isMoved = false;   ///< and with the servos
     QString notConnected;   ///< why it cannot be measured with what is connected, in a sentence; empty: it can
 
@@ -105,6 +108,7 @@ struct LinkStand {
         entered, ///< by hand
         measured,
         simulated, ///< by the virtual lab
+        spare,     ///< not needed in this room, or another link measures the same
         stale      ///< something that it builds on was measured later
     };
     How how = How::open;

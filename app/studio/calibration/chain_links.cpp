@@ -80,6 +80,88 @@ ChainLink projectorLink() {
     return link;
 }
 
+LinkOutcome outcomeOf(const PlacedDevices& measured) {
+    LinkOutcome outcome = judged(measured);
+    if (measured.refusal) return outcome;
+    outcome.installation = measured.room;
+    outcome.summary = QString::fromStdString(measured.summary);
+    const auto pixels = [](double number) { return QString("%1 px").arg(number, 0, 'f', 2); };
+    const HeldOutLight& all = measured.heldOut;
+    if (all.points > 0)
+        outcome.figures = {{QObject::tr("Light that the fit never saw lies beside: median"), millimetres(all.median)},
+                           {QObject::tr("In 95 of 100 places at most"), millimetres(all.most)}};
+    for (const PlacedDevices::Device& device : measured.devices) {
+        const QString name = QString::fromStdString(device.name);
+        outcome.figures.push_back({QObject::tr("%1: residual of the fit").arg(name), pixels(device.rms)});
+        if (device.heldOut.points > 0)
+            outcome.figures.push_back({QObject::tr("%1: held out").arg(name), pixels(device.heldOut.medianPixels)});
+        if (device.shiftSigma > 0.0)
+            outcome.figures.push_back({QObject::tr("%1: uncertainty of its place").arg(name),
+                                       QString("± %1").arg(millimetres(device.shiftSigma))});
+    }
+    return outcome;
+}
+
+bool hasSeveral(const Installation& room) {
+    const auto isOn = [](const InstalledProjector& projector) { return projector.enabled; };
+    return std::ranges::count_if(room.projectors, isOn) > 1 || room.cameras.size() > 1;
+}
+
+bool isNeverWanted(const Installation&) { return false; }
+
+ChainLink roomLink() {
+    ChainLink link;
+    link.stage = &calibrationStage("room");
+    link.id = LinkId::room;
+    link.key = "room";
+    link.title = QObject::tr("All projectors and cameras");
+    link.purpose = QObject::tr("Several projectors in one world: where their pictures overlap, they meet.");
+    link.how = {QObject::tr("Lay the board flat on the table, where all projectors light it."),
+                QObject::tr("Each projector lights it in turn, and the camera looks."),
+                QObject::tr("Lay it otherwise, tilted to another side, six times; each new place is noticed by "
+                            "itself. The last one checks the others.")};
+    link.isWanted = hasSeveral;
+    link.isOnTable = true;
+    link.onTable = QObject::tr("It looks for the printed board that is chosen in Projector and camera.");
+    return link;
+}
+
+ChainLink mirrorLink() {
+    ChainLink link;
+    link.stage = &calibrationStage("mirror");
+    link.id = LinkId::mirror;
+    link.key = "mirror";
+    link.title = QObject::tr("Projector in a mirror");
+    link.purpose = QObject::tr("In place of Projector and camera, where the camera sees the light in a mirror alone.");
+    link.how = {QObject::tr("Lay the board flat on the table, and cover it from the camera: only the mirror shows it."),
+                QObject::tr("Patterns are projected and photographed in the mirror."),
+                QObject::tr("Then the mirror is covered, and the board itself is photographed where it lies."),
+                QObject::tr("Six more times, tilted to other sides; the last one checks the others.")};
+    link.isWanted = isNeverWanted;
+    link.notConnected =
+        QObject::tr("This version does not guide covering a mirror at the table: measure in the virtual "
+                    "lab, from a recording, or from a folder of pictures on the command line.");
+    return link;
+}
+
+ChainLink deviceAloneLink() {
+    ChainLink link;
+    link.stage = &calibrationStage("device");
+    link.id = LinkId::deviceAlone;
+    link.key = "device-alone";
+    link.title = QObject::tr("Projectors by the device alone");
+    link.purpose = QObject::tr("In place of Projector and camera, without a board: the device's own shape tells.");
+    link.warning = QObject::tr("Hands off: the servos move");
+    link.how = {QObject::tr("The device stays where it lies. Its servos were measured before."),
+                QObject::tr("One actuator after the other rises; patterns are projected and photographed each time."),
+                QObject::tr("At last all rise a little: that checks the others. STOP ends it at any time.")};
+    link.needs = {LinkId::servos};
+    link.isWanted = isNeverWanted;
+    link.isOnTable = true;
+    link.isMoved = true;
+    return link;
+}
+
 QString percent(double share) { return QString("%1 %").arg(100.0 * share, 0, 'f', 1); }
 
 LinkOutcome outcomeOf(const LightCalibration& measured) {
@@ -112,6 +194,8 @@ LinkOutcome outcomeOf(const LightCalibration& measured) {
 ChainLink lightLink() {
     ChainLink link;
     link.isOnTable = true;
+    link.onTable = QObject::tr("Where a sheet lies nobody knows here, so the lighter of device and table counts as "
+                               "white.");
     link.stage = &calibrationStage("light");
     link.id = LinkId::light;
     link.key = "light";
@@ -333,6 +417,7 @@ LinkOutcome outcomeOf(const StageResult& result, const StageSite& site) {
     if (const auto* check = std::get_if<VerifiedRoom>(&result)) return outcomeOf(*check, site.room);
     if (const auto* light = std::get_if<LightCalibration>(&result)) return outcomeOf(*light);
     if (const auto* delays = std::get_if<MeasuredDelays>(&result)) return outcomeOf(*delays);
+    if (const auto* placed = std::get_if<PlacedDevices>(&result)) return outcomeOf(*placed);
     return outcomeOf(std::get<Registration>(result));
 }
 
@@ -351,8 +436,9 @@ const Origin* originOf(const ChainLink& link, const Installation& room) {
 }
 
 const std::vector<ChainLink>& chainLinks() {
-    static const std::vector<ChainLink> links{projectorLink(), lightLink(),  pointerLink(), trackerLink(), deviceLink(),
-                                              eyeLink(),       servosLink(), delaysLink(),  checkLink()};
+    static const std::vector<ChainLink> links{projectorLink(), roomLink(),   lightLink(),  pointerLink(),
+                                              trackerLink(),   deviceLink(), eyeLink(),    servosLink(),
+                                              delaysLink(),    checkLink(),  mirrorLink(), deviceAloneLink()};
     return links;
 }
 

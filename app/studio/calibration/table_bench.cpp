@@ -11,6 +11,7 @@
 #include <QPointer>
 #include <QTimer>
 
+#include "calibration/capture/boards_at_table.h"
 #include "calibration/capture/pose_capture.h"
 #include "calibration/light/camera_light.h"
 #include "calibration/servos/servo_measurement.h"
@@ -140,11 +141,22 @@ class TableBench final : public Bench {
 public:
     TableBench(const TableParts& parts, const Installation& room, bool isMoved)
         : table_(parts, room), isSimulated_(isMoved && parts.devices->profile().address.starts_with("sim://")),
-          camera_(room.cameras.front().address) {}
+          camera_(room.cameras.front().address), board_(parts.board) {}
 
     [[nodiscard]] RecordingSource source() const override {
         return {isSimulated_ ? RecordingSource::Kind::rehearsal : RecordingSource::Kind::table, "camera " + camera_,
                 utcDate(), 0};
+    }
+    [[nodiscard]] BoardsCapture recordBoards(const StageSite& site, const Progress& progress) override {
+        BoardsAtTable boards;
+        boards.camera = &table_.camera();
+        boards.cameraName = site.room.cameras.front().name;
+        for (std::size_t k = 0; k < site.room.projectors.size(); ++k)
+            if (PatternDisplay* display = table_.display(k))
+                boards.projectors.push_back({site.room.projectors[k].name, display});
+        boards.board = board_;
+        boards.clock = table_.clock();
+        return captureBoards(boards, progress);
     }
     [[nodiscard]] std::vector<ProjectorPoint> look(const StageSite& site, const std::vector<double>& commanded,
                                                    const Progress& progress) override {
@@ -173,7 +185,7 @@ private:
     DeviceOnTable table_;
     std::optional<CameraLight> light_; ///< before the table goes
     bool isSimulated_;
-    std::string camera_;
+    std::string camera_, board_;
 };
 
 /// What stands in the way of a measurement.

@@ -43,7 +43,8 @@ CalibrationService::DisplayOpener displayOpener(Studio& studio) {
 ChainService::TableOpener tableOpener(Studio& studio) {
     return [&studio](const Installation& room, bool isMoved) {
         return openTable({&studio.devices, displayOpener(studio),
-                          [](const std::string& address) { return openCaptureCamera(address); }},
+                          [](const std::string& address) { return openCaptureCamera(address); },
+                          boardText(keptSetup(studio.settings, CaptureWay::camera).board)},
                          room, isMoved);
     };
 }

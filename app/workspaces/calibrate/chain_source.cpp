@@ -129,12 +129,11 @@ private:
                                      ? tableObstacle(*document.installation, parts_.studio.devices, link.isMoved)
                                      : parts_.live.obstacle(link.liveRoles);
         seen_->setVisible(isLive && !state.live && link.notConnected.isEmpty()); // else the card says it
-        const QString words =
-            !obstacle.isEmpty() ? obstacle
-            : link.isMoved      ? QString("Camera, projectors and servos are connected.")
-            : link.isOnTable ? QString("The room's camera is opened to measure. Where a sheet lies nobody knows here, "
-                                       "so the lighter of device and table counts as white.")
-                             : QString("The tracker sees all that is needed.");
+        const QString words = !obstacle.isEmpty() ? obstacle
+                              : link.isMoved      ? QString("Camera, projectors and servos are connected.")
+                              : link.isOnTable
+                                  ? QString("The room's camera is opened to measure. %1").arg(link.onTable).trimmed()
+                                  : QString("The tracker sees all that is needed.");
         if (words != seen_->text()) { // it is asked ten times a second
             seen_->setText(words);
             seen_->setProperty("look", obstacle.isEmpty() ? "muted" : "warning");

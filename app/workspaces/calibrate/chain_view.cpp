@@ -46,6 +46,8 @@ StandLook lookOf(const ChainState& state, std::size_t link) {
         return {"warning", IconRole::warning, "Again"};
     case How::waits:
         return {"minus", IconRole::muted, "Later"};
+    case How::spare:
+        return {"minus", IconRole::muted, "Not needed"};
     case How::open:
         break;
     }
@@ -63,16 +65,16 @@ public:
         setProperty("look", "row");
         setCheckable(true);
         setAutoExclusive(true);
-        row_.emplace(*this, static_cast<int>(link) + 1, QMargins(8, 6, 8, 6));
+        row_.emplace(*this, QMargins(8, 6, 8, 6));
         setSizePolicy(QSizePolicy::Preferred, QSizePolicy::Minimum);
     }
-    /// `isChosen`: not while none of them is looked at.
-    void show(const ChainState& state, bool isChosen) {
+    /// `isChosen`: not while none of them is looked at. `number`: its place among those that are shown; 0: none.
+    void show(const ChainState& state, bool isChosen, int number) {
         const StandLook look = lookOf(state, link_);
         const ChainLink& shown = chainLinks()[link_];
         const QString words = state.stands[link_].words;
         row_->show({look.icon, look.role, shown.title, look.word,
-                    words.isEmpty() ? shown.purpose : words.left(1).toUpper() + words.mid(1)});
+                    words.isEmpty() ? shown.purpose : words.left(1).toUpper() + words.mid(1), number});
         setAutoExclusive(false); // else the chosen one could not be let go of
         setChecked(isChosen);
         setAutoExclusive(true);
@@ -99,12 +101,17 @@ public:
                 parts_.selection.setBudget(false);
             });
             rows_.push_back(row);
-            column.layout->addWidget(row);
+            if (isAside(k))
+                others_.push_back(row);
+            else
+                column.layout->addWidget(row);
         }
         rest_ = makeCommandButton(parts.studio.commands.find("calibrate.chain.rest"), "chain.rest", this);
         column.layout->addWidget(rest_);
         column.layout->addWidget(
             makeCommandButton(parts.studio.commands.find("calibrate.budget"), "chain.budget", this));
+        column.layout->addWidget(makeHeading("Other ways to calibrate a projector", this));
+        for (LinkRow* row : others_) column.layout->addWidget(row);
         column.layout->addStretch(1);
         connect(&parts.chain, &ChainService::changed, this, [this] { refresh(); });
         connect(&parts.selection, &CalibrateSelection::budgetChanged, this, [this] { refresh(); });
@@ -112,14 +119,25 @@ public:
     }
 
 private:
+    /// In place of another link, not one after it.
+    static bool isAside(std::size_t link) {
+        return chainLinks()[link].id == LinkId::mirror || chainLinks()[link].id == LinkId::deviceAlone;
+    }
+
     void refresh() {
         const ChainState& state = parts_.chain.state();
-        for (std::size_t k = 0; k < rows_.size(); ++k)
-            rows_[k]->show(state, state.chosen == k && !parts_.selection.budget());
+        int number = 0;
+        for (std::size_t k = 0; k < rows_.size(); ++k) {
+            const bool isChosen = state.chosen == k && !parts_.selection.budget();
+            // With one projector there are not several to be brought together.
+            const bool isShown = chainLinks()[k].id != LinkId::room || state.stands[k].how != How::spare || isChosen;
+            rows_[k]->setVisible(isShown);
+            rows_[k]->show(state, isChosen, isShown && !isAside(k) ? ++number : 0);
+        }
     }
 
     CalibrateParts parts_;
-    std::vector<LinkRow*> rows_;
+    std::vector<LinkRow*> rows_, others_;
     QPushButton* rest_ = nullptr;
 };
 

@@ -5,9 +5,9 @@
 
 namespace lumorph::studio {
 
-StateRow::StateRow(QWidget& host, int number, const QMargins& margins)
-    : host_(host), number_(number), icon_(new IconLabel("minus", IconRole::muted, 20, &host)),
-      title_(new QLabel(&host)), how_(new QLabel(&host)), words_(new QLabel(&host)) {
+StateRow::StateRow(QWidget& host, const QMargins& margins)
+    : host_(host), icon_(new IconLabel("minus", IconRole::muted, 20, &host)), title_(new QLabel(&host)),
+      how_(new QLabel(&host)), words_(new QLabel(&host)) {
     title_->setProperty("look", "heading");
     how_->setObjectName(host.objectName() + ".how");
     how_->setProperty("look", "badge");
@@ -35,10 +35,11 @@ StateRow::StateRow(QWidget& host, int number, const QMargins& margins)
 
 void StateRow::show(const StateRowText& text) {
     icon_->setIcon(text.icon, text.role);
-    title_->setText(QString("%1  %2").arg(number_).arg(text.title));
+    title_->setText(text.number > 0 ? QString("%1  %2").arg(text.number).arg(text.title) : text.title);
     how_->setText(text.state);
     words_->setText(text.words);
-    host_.setAccessibleName(QString("Step %1, %2: %3").arg(number_).arg(text.title, text.state));
+    const QString name = text.number > 0 ? QString("Step %1, %2").arg(text.number).arg(text.title) : text.title;
+    host_.setAccessibleName(QString("%1: %2").arg(name, text.state));
 }
 
 } // namespace lumorph::studio

@@ -12,18 +12,18 @@ struct StateRowText {
     IconRole role = IconRole::muted;
     QString title, state; ///< "Pointer tip", "Measured"
     QString words;        ///< why, or when
+    int number = 0;       ///< in its list; 0: none is shown
 };
 
 /// Such a row: icon, number and title, state, and words below. Fills a widget of any kind, which may be a button; its
 /// parts are called after that widget: NAME.how and NAME.words.
 class StateRow {
 public:
-    StateRow(QWidget& host, int number, const QMargins& margins);
+    StateRow(QWidget& host, const QMargins& margins);
     void show(const StateRowText& text);
 
 private:
     QWidget& host_;
-    int number_;
     IconLabel* icon_;
     QLabel *title_, *how_, *words_;
 };

@@ -46,16 +46,17 @@ std::pair<QString, IconRole> iconOf(How how) {
 /// One step: its number, title, state, and why.
 class StepRow : public QWidget {
 public:
-    StepRow(int number, const QString& id, QWidget* parent) : QWidget(parent) {
+    StepRow(int number, const QString& id, QWidget* parent) : QWidget(parent), number_(number) {
         setObjectName("calibrate.step." + id);
-        row_.emplace(*this, number, QMargins(0, 4, 0, 4));
+        row_.emplace(*this, QMargins(0, 4, 0, 4));
     }
     void show(const CalibrationStep& step) {
         const auto [name, role] = iconOf(step.how);
-        row_->show({name, role, step.title, howWords(step.how), step.words});
+        row_->show({name, role, step.title, howWords(step.how), step.words, number_});
     }
 
 private:
+    int number_;
     std::optional<StateRow> row_; ///< once this has its name
 };
 
