@@ -24,6 +24,10 @@ constexpr int kProposedPoses = 4; // times those that are wanted: not all are se
 
 std::string poseName(std::size_t pose) { return "pose_" + std::to_string(pose + 1); }
 
+std::string placeWords(std::size_t pose, std::size_t count) {
+    return "board in place " + std::to_string(pose + 1) + " of " + std::to_string(count);
+}
+
 NamedDevice namedDevice(const std::string& name, const CalibratedCamera& device) {
     return {name, {device.size.x, device.size.y}};
 }
@@ -40,13 +44,12 @@ bool isInPicture(const BoardLab& lab, const CalibratedCamera& device, const glm:
 
 /// One pose under all patterns of an order: the board lies where it was laid.
 ReadPose photographed(BoardLab& lab, const std::string& name, const CalibrationBoard& board, const CaptureOrder& order,
-                      const Progress& progress) {
+                      const std::string& words, const Progress& progress) {
     std::vector<cv::Mat> images;
     CapturedView view{name, {}};
     for (const PatternImage& pattern : order.images) {
         progress.throwIfCancelled();
-        progress.report(static_cast<double>(images.size()) / static_cast<double>(order.images.size()),
-                        "photographing boards");
+        progress.report(static_cast<double>(images.size()) / static_cast<double>(order.images.size()), words);
         lab.show(drawPattern(pattern, order.projector));
         images.push_back(lab.photograph());
         view.files.emplace_back("image_" + std::to_string(images.size()) + ".png");
@@ -168,7 +171,9 @@ BoardsCapture captureBoardsInLab(const Installation& truth, std::uint32_t seed, 
             }
             pair.lab.lay(poses[pose]);
             const ReadPose read =
-                photographed(pair.lab, names[pose], board, pair.order, progress.part(done, done + share));
+                photographed(pair.lab, names[pose], board, pair.order,
+                             placeWords(pose, poses.size()) + ", lit by " + capture.projectors[pair.projector].name,
+                             progress.part(done, done + share));
             takeLight(capture, pose, pair.camera, pair.projector, read.observations, read.decoded.white.size());
             capture.warnings.insert(capture.warnings.end(), read.warnings.begin(), read.warnings.end());
             done += share;
@@ -216,7 +221,9 @@ MirrorCapture captureMirrorInLab(const Installation& truth, const LabMirror& mir
     for (std::size_t pose = 0; pose < poses.size(); ++pose) {
         const double done = static_cast<double>(pose) * share;
         mirrored.lay(poses[pose]);
-        const ReadPose read = photographed(mirrored, poseName(pose), board, order, progress.part(done, done + share));
+        const ReadPose read =
+            photographed(mirrored, poseName(pose), board, order, placeWords(pose, poses.size()) + ", in the mirror",
+                         progress.part(done, done + share));
         MirrorView view = mirrorView(read.observations, camera.size.x);
         if (isInPicture(direct, camera, poses[pose], &BoardLab::cameraPixel)) {
             direct.lay(poses[pose]);

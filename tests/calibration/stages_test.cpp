@@ -2,9 +2,12 @@
 #include <fstream>
 #include <functional>
 
+#include <glm/gtc/matrix_transform.hpp>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "calibration/capture/boards_at_table.h"
+#include "calibration/lab/boards_lab.h"
 #include "calibration/lab/moved_room.h"
 #include "calibration/lab/true_room.h"
 #include "calibration/light/camera_light.h"
@@ -57,6 +60,7 @@ const Kept& keptOf(const std::string& stage) {
     const StageRoom room(stage, kSeed);
     LabBenchOptions options;
     options.checkPattern = "phase:16x3+1x3";
+    options.boards.poses = 5;
     LabBench bench(*room.site.rig, room.truth, kSeed, options);
     Kept& kept = all[stage];
     kept.measured = measureStage(calibrationStage(stage), room.site, bench);
@@ -355,6 +359,84 @@ TEST(StageAtTheTable, LightIsMeasuredByAConnectedCameraWhileSomebodyCoversTheLen
     EXPECT_EQ(found.response.way, Origin::Way::measured);
     EXPECT_EQ(numbersOf(solveStage(calibrationStage("light"), measured.recording, room.site)),
               numbersOf(measured.result));
+}
+
+/// A board before the lab's light, and somebody who lays it elsewhere when asked, and once pushes it too early.
+class ConnectedBoards final : public Bench {
+public:
+    explicit ConnectedBoards(BoardLab& lab)
+        : lab_(lab), camera_(openLabCamera(lab)), screen_(openLabDisplay(lab)), places_(lab.possiblePoses(20)),
+          eyes_(*this), wall_(*this) {}
+    [[nodiscard]] RecordingSource source() const override { return {RecordingSource::Kind::table, "camera 9", "", 0}; }
+    [[nodiscard]] BoardsCapture recordBoards(const StageSite& site, const Progress&) override {
+        std::string asked;
+        const Progress hands([&](double, std::string_view words) {
+            const bool isAsked = words.starts_with("lay the board") || words.starts_with("place ");
+            if (isAsked && words != asked) lay(); // also where a pose is asked for again
+            asked = isAsked ? words : std::string_view();
+        });
+        BoardsAtTable table;
+        table.camera = &eyes_;
+        table.projectors = {{site.room.projectors.front().name, &wall_}};
+        table.pattern = "phase:16x4+1x4";
+        table.poses = 5;
+        table.clock = clock_;
+        return captureBoards(table, hands);
+    }
+    std::size_t laid = 0;
+
+private:
+    struct Eyes final : CaptureCamera {
+        explicit Eyes(ConnectedBoards& of) : bench(of) {}
+        [[nodiscard]] cv::Mat grab(const Progress& progress) override {
+            bench.clock_->advance(Microseconds{100'000});
+            return bench.camera_->grab(progress);
+        }
+        [[nodiscard]] std::string name() const override { return "/dev/video9"; }
+        [[nodiscard]] cv::Size size() const override { return bench.camera_->size(); }
+        ConnectedBoards& bench;
+    };
+    struct Wall final : PatternDisplay {
+        explicit Wall(ConnectedBoards& of) : bench(of) {}
+        [[nodiscard]] cv::Size size() const override { return bench.screen_->size(); }
+        void show(const cv::Mat& picture, const Progress& progress) override {
+            bench.screen_->show(picture, progress);
+            // In the middle of the third place's patterns somebody comes too near.
+            if (bench.laid == 3 && ++bench.shown_ == 14)
+                bench.lab_.lay(glm::translate(bench.places_[2], {0.01, 0.0, 0.0}));
+        }
+        void clear() override { bench.screen_->clear(); }
+        ConnectedBoards& bench;
+    };
+    void lay() { lab_.lay(places_.at(laid++)); }
+
+    BoardLab& lab_;
+    std::unique_ptr<CaptureCamera> camera_;
+    std::unique_ptr<PatternDisplay> screen_;
+    std::vector<glm::dmat4> places_;
+    std::shared_ptr<ManualClock> clock_ = std::make_shared<ManualClock>();
+    Eyes eyes_;
+    Wall wall_;
+    int shown_ = 0;
+};
+
+TEST(StageAtTheTable, BoardsAreNoticedAsTheyAreLaidAndAPushedOneIsTakenAgain) {
+    const StageRoom room("room", 41);
+    Installation truth = labRoomTruth(room.site.room);
+    truth.projectors.resize(1);
+    StageSite site = room.site;
+    site.room.projectors.resize(1);
+    BoardLab lab(truth, parseCalibrationBoard("chess:9x7:25"), {}, 41);
+    ConnectedBoards bench(lab);
+    const MeasuredStage measured = measureStage(calibrationStage("room"), site, bench);
+    const auto& places = std::get<PlacedDevices>(measured.result);
+    ASSERT_TRUE(places.good()) << sentenceOf(*places.refusal);
+    EXPECT_EQ(bench.laid, 6U) << "five places, one of them twice";
+    const double beside = worstLight(places.room.projectors.front().camera, truth.projectors.front().camera);
+    std::printf("boards at the table: %.2f mm beside at worst, held out %.2f px\n", beside,
+                places.heldOut.medianPixels);
+    EXPECT_LT(beside, 0.5);
+    EXPECT_EQ(places.room.projectors.front().pose.way, Origin::Way::measured);
 }
 
 TEST(StageAtTheTable, LightIsMeasuredByACameraWithoutColour) {

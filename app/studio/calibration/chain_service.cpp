@@ -104,6 +104,11 @@ ChainStep stepOf(const ChainState& state) {
     case LinkStand::How::waits:
         return {What::goOn, Tone::quiet, QObject::tr("Its turn comes later"),
                 QObject::tr("%1 What it builds on is measured first.").arg(link.purpose), QObject::tr("What is next?")};
+    case LinkStand::How::spare:
+        return measuringStep(state, Tone::quiet, link.title,
+                             stand.words.isEmpty() ? link.purpose
+                                                   : stand.words.left(1).toUpper() + stand.words.mid(1) + ".",
+                             QObject::tr("Measure in the lab"));
     case LinkStand::How::measured:
         return measuringStep(state, Tone::good, QObject::tr("Measured"), stand.words, again);
     case LinkStand::How::simulated:

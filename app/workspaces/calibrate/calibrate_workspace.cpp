@@ -42,10 +42,10 @@ CalibrationService::DisplayOpener displayOpener(Studio& studio) {
 
 ChainService::TableOpener tableOpener(Studio& studio) {
     return [&studio](const Installation& room, bool isMoved) {
-        return openTable({&studio.devices, displayOpener(studio),
-                          [](const std::string& address) { return openCaptureCamera(address); },
-                          boardText(keptSetup(studio.settings, CaptureWay::camera).board)},
-                         room, isMoved);
+        TableParts parts{&studio.devices, displayOpener(studio),
+                         [](const std::string& address) { return openCaptureCamera(address); }};
+        parts.board = boardText(keptSetup(studio.settings, CaptureWay::camera).board);
+        return openTable(parts, room, isMoved);
     };
 }
 

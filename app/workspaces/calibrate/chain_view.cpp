@@ -47,7 +47,7 @@ StandLook lookOf(const ChainState& state, std::size_t link) {
     case How::waits:
         return {"minus", IconRole::muted, "Later"};
     case How::spare:
-        return {"minus", IconRole::muted, "Not needed"};
+        return {"minus", IconRole::muted, "Optional"};
     case How::open:
         break;
     }
