@@ -157,11 +157,10 @@ private:
         InstalledProjector projector = defaultInstallation().projectors.front();
         const auto& all = studio_.document.state().installation->projectors;
         projector.name = "Projector " + std::to_string(all.size() + 1);
-        // Beside the others, so that it is seen to be another.
+        // Beside the others, so that it is seen to be another; where it truly stands nobody has said.
         carryTo(projector.camera,
                 positionOf(projector.camera) + glm::dvec3(0.5 * static_cast<double>(all.size()), 0, 0));
         lookAt(projector.camera, glm::dvec2(0.0));
-        projector.pose = {Origin::Way::entered, {}, utcDate()};
         editInstallation(studio_.document, tr("Add a projector"),
                          [&projector](Installation& installation) { installation.projectors.push_back(projector); });
         selection_.choose({SceneChoice::Kind::projector,
