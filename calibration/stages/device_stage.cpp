@@ -51,7 +51,7 @@ std::vector<std::size_t> lampsOf(const Installation& room) {
     return lamps;
 }
 
-StageRecording recordDevice(const StageSite& site, Bench& bench, const Progress& progress) {
+StageRecording recordShots(const StageSite& site, Bench& bench, const Progress& progress) {
     StageRecording recording = stages::emptyRecording("device", site, bench);
     recording.method = kDevicePattern;
     const std::size_t actuators = site.rig->actuatorCount();
@@ -222,7 +222,7 @@ CalibrationStage stages::deviceStage() {
     stage.title = "Projectors by the device alone";
     stage.needs = {"servos"}; // flaps that stand elsewhere than they were told are another device
     stage.measure = [](const StageSite& site, Bench& bench, const Progress& progress) {
-        StageRecording recording = recordDevice(site, bench, progress.part(0.0, 0.6));
+        StageRecording recording = recordShots(site, bench, progress.part(0.0, 0.6));
         StageResult result = solveDeviceAlone(recording, site, progress.part(0.6, 1.0));
         return MeasuredStage{std::move(recording), std::move(result)};
     };

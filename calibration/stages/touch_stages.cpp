@@ -138,8 +138,20 @@ void addLandmark(TouchWriter& writer, const TouchedLandmark& point, double check
     writer.add(point.touch, {check, point.onModel.x, point.onModel.y, point.onModel.z, out.x, out.y, out.z});
 }
 
-StageRecording recordingOf(const LandmarkCapture& capture, const std::optional<LitDeviceCapture>& lit,
-                           StageRecording recording) {
+struct DeviceTouches {
+    LandmarkCapture capture;
+    std::optional<LitDeviceCapture> lit;
+};
+
+DeviceTouches recordDevice(Bench& bench, const StageSite& site, const Progress& progress) {
+    DeviceTouches touches{bench.recordLandmarks(site, progress.part(0.0, 0.5)), std::nullopt};
+    progress.throwIfCancelled();
+    touches.lit = bench.recordLitDevice(site, progress.part(0.5, 1.0));
+    return touches;
+}
+
+StageRecording recordingOf(const DeviceTouches& touches, StageRecording recording) {
+    const auto& [capture, lit] = touches;
     TouchWriter writer(kLandmarkColumns);
     for (const TouchedLandmark& point : capture.touches) addLandmark(writer, point, kForFit);
     for (const TouchedLandmark& point : capture.fresh) addLandmark(writer, point, kForCheck);
@@ -209,90 +221,53 @@ StageResult solveEye(const StageRecording& recording, const StageSite& site, con
     return registerEye(capture, site.room, progress);
 }
 
-/// All of them solve what they wrote: there is one way from touches to figures.
-MeasuredStage solved(StageRecording recording, const CalibrationStage& stage, const StageSite& site,
-                     const Progress& progress) {
-    progress.throwIfCancelled();
-    StageResult result = stage.solve(recording, site, progress.part(0.6, 1.0));
-    return {std::move(recording), std::move(result)};
+/// A row of touches: what it is recorded by, and the figure that it measures. All solve what they wrote: there is one
+/// way from touches to figures.
+template <const char* key, auto record, auto solve, auto figure, auto origin>
+CalibrationStage touchStage(const char* title, std::vector<std::string_view> needs) {
+    CalibrationStage stage;
+    stage.key = key;
+    stage.title = title;
+    stage.needs = std::move(needs);
+    stage.measure = [](const StageSite& site, Bench& bench, const Progress& progress) {
+        StageRecording recording = recordingOf(std::invoke(record, bench, site, progress.part(0.0, 0.6)),
+                                               stages::emptyRecording(key, site, bench));
+        progress.throwIfCancelled();
+        StageResult result = solve(recording, site, progress.part(0.6, 1.0));
+        return MeasuredStage{std::move(recording), std::move(result)};
+    };
+    stage.solve = solve;
+    stage.apply = [](const Installation& measured, Installation& room) {
+        room.*figure = measured.*figure;
+        room.origins.*origin = measured.origins.*origin;
+    };
+    stage.origin = [](const Installation& room) -> const Origin* { return &(room.origins.*origin); };
+    return stage;
 }
+
+constexpr char kPointerKey[] = "pointer", kTrackerKey[] = "tracker", kDeviceKey[] = "body", kEyeKey[] = "eye";
+using Origins = Installation::Origins;
 
 } // namespace
 
 CalibrationStage stages::pointerStage() {
-    CalibrationStage stage;
-    stage.key = "pointer";
-    stage.title = "Pointer tip";
-    stage.measure = [](const StageSite& site, Bench& bench, const Progress& progress) {
-        return solved(
-            recordingOf(bench.recordPointer(site, progress.part(0.0, 0.6)), emptyRecording("pointer", site, bench)),
-            calibrationStage("pointer"), site, progress);
-    };
-    stage.solve = solvePointer;
-    stage.apply = [](const Installation& measured, Installation& room) {
-        room.pointerTip = measured.pointerTip;
-        room.origins.pointer = measured.origins.pointer;
-    };
-    stage.origin = [](const Installation& room) { return &room.origins.pointer; };
-    return stage;
+    return touchStage<kPointerKey, &Bench::recordPointer, solvePointer, &Installation::pointerTip, &Origins::pointer>(
+        "Pointer tip", {});
 }
 
 CalibrationStage stages::trackerStage() {
-    CalibrationStage stage;
-    stage.key = "tracker";
-    stage.title = "Tracker and projector in one world";
-    stage.needs = {"projector", "pointer"};
-    stage.measure = [](const StageSite& site, Bench& bench, const Progress& progress) {
-        return solved(
-            recordingOf(bench.recordDots(site, progress.part(0.0, 0.6)), emptyRecording("tracker", site, bench)),
-            calibrationStage("tracker"), site, progress);
-    };
-    stage.solve = solveTracker;
-    stage.apply = [](const Installation& measured, Installation& room) {
-        room.worldFromTracker = measured.worldFromTracker;
-        room.origins.tracker = measured.origins.tracker;
-    };
-    stage.origin = [](const Installation& room) { return &room.origins.tracker; };
-    return stage;
+    return touchStage<kTrackerKey, &Bench::recordDots, solveTracker, &Installation::worldFromTracker,
+                      &Origins::tracker>("Tracker and projector in one world", {"projector", "pointer"});
 }
 
 CalibrationStage stages::bodyStage() {
-    CalibrationStage stage;
-    stage.key = "body";
-    stage.title = "Device on its body";
-    stage.needs = {"pointer"};
-    stage.measure = [](const StageSite& site, Bench& bench, const Progress& progress) {
-        const LandmarkCapture touched = bench.recordLandmarks(site, progress.part(0.0, 0.3));
-        progress.throwIfCancelled();
-        const std::optional<LitDeviceCapture> lit = bench.recordLitDevice(site, progress.part(0.3, 0.6));
-        return solved(recordingOf(touched, lit, emptyRecording("body", site, bench)), calibrationStage("body"), site,
-                      progress);
-    };
-    stage.solve = solveDevice;
-    stage.apply = [](const Installation& measured, Installation& room) {
-        room.bodyFromDevice = measured.bodyFromDevice;
-        room.origins.deviceBody = measured.origins.deviceBody;
-    };
-    stage.origin = [](const Installation& room) { return &room.origins.deviceBody; };
-    return stage;
+    return touchStage<kDeviceKey, recordDevice, solveDevice, &Installation::bodyFromDevice, &Origins::deviceBody>(
+        "Device on its body", {"pointer"});
 }
 
 CalibrationStage stages::eyeStage() {
-    CalibrationStage stage;
-    stage.key = "eye";
-    stage.title = "Eye";
-    stage.needs = {"pointer", "tracker"};
-    stage.measure = [](const StageSite& site, Bench& bench, const Progress& progress) {
-        return solved(recordingOf(bench.recordEye(site, progress.part(0.0, 0.6)), emptyRecording("eye", site, bench)),
-                      calibrationStage("eye"), site, progress);
-    };
-    stage.solve = solveEye;
-    stage.apply = [](const Installation& measured, Installation& room) {
-        room.eyeFromHead = measured.eyeFromHead;
-        room.origins.eyeOffset = measured.origins.eyeOffset;
-    };
-    stage.origin = [](const Installation& room) { return &room.origins.eyeOffset; };
-    return stage;
+    return touchStage<kEyeKey, &Bench::recordEye, solveEye, &Installation::eyeFromHead, &Origins::eyeOffset>(
+        "Eye", {"pointer", "tracker"});
 }
 
 } // namespace lumorph

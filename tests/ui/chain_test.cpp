@@ -193,7 +193,7 @@ TEST_F(Chain, EachLinkIsMeasuredShownAndUsed) {
 
 TEST_F(Chain, TwoProjectorsAndOneInAMirrorAreCalibratedByTheMouse) {
     ASSERT_TRUE(eventually([&] { return window.state().rig.rig && window.studio().jobs.running().empty(); }, 60s));
-    EXPECT_FALSE(window.find<QWidget>("chain.link.room")->isVisible()) << "one projector is not several";
+    EXPECT_FALSE(window.findNow<QWidget>("chain.link.room")) << "one projector is not several";
     studio::editInstallation(window.studio().document, "A projector of few pixels", [](Installation& edited) {
         CalibratedCamera& lamp = edited.projectors.front().camera;
         lamp = withSize(lamp, {480, 270});
@@ -231,11 +231,11 @@ TEST_F(Chain, AllThatIsMissingIsMeasuredOneAfterTheOther) {
     ASSERT_TRUE(eventually([&] { return window.state().rig.rig && window.studio().jobs.running().empty(); }, 60s));
     SoundMixer& mixer = window.studio().sound.mixer();
     mixer.setBoard(std::make_shared<const SoundBoard>(SoundBoard::synthesised()));
-    for (const studio::ChainLink& link : studio::chainLinks())
-        EXPECT_TRUE(link.isWanted
-                        ? badge(link.key) == "Optional"
-                        : badge(link.key) == "Next" || badge(link.key) == "Later" || badge(link.key) == "Open")
-            << link.key;
+    for (const studio::ChainLink& link : studio::chainLinks()) {
+        if (link.id == studio::LinkId::room) continue; // out of sight with one projector
+        const QString how = badge(link.key);
+        EXPECT_TRUE(link.isWanted ? how == "Optional" : how == "Next" || how == "Later" || how == "Open") << link.key;
+    }
     ASSERT_NO_FATAL_FAILURE(measureProjector());
     window.click("chain.rest");
     EXPECT_TRUE(mixer.silent()) << "light moves nothing";
@@ -254,7 +254,8 @@ TEST_F(Chain, AllThatIsMissingIsMeasuredOneAfterTheOther) {
     window.click("chain.rest");
     ASSERT_TRUE(eventually([&] { return badge("check") == "Simulated"; }, 300s)) << story();
     for (const studio::ChainLink& link : studio::chainLinks())
-        EXPECT_EQ(badge(link.key), link.isWanted ? "Optional" : "Simulated") << link.key << ": " << story();
+        if (link.id != studio::LinkId::room)
+            EXPECT_EQ(badge(link.key), link.isWanted ? "Optional" : "Simulated") << link.key << ": " << story();
     EXPECT_EQ(room().servos.size(), window.state().rig.rig->actuatorCount());
     EXPECT_EQ(room().projectors.front().responseCurve.size(), 65U);
     EXPECT_GT(room().projectors.front().black.g, 0.0F);
