@@ -12,9 +12,9 @@
 #include "app/cli/checks.h"
 #include "app/cli/commands.h"
 #include "app/cli/stage_output.h"
-#include "calibration/lab/board_lab.h"
-#include "calibration/lab/registration_lab.h"
 #include "calibration/lab/true_room.h"
+#include "calibration/stages/lab_bench.h"
+#include "calibration/stages/stage.h"
 #include "core/base/error.h"
 #include "core/rig/rig_file.h"
 
@@ -64,27 +64,26 @@ nlohmann::json jsonOf(const Stage& stage) {
 }
 
 /// One after the other; ends with the first that is refused.
-std::vector<Stage> stagesOf(const Rig& rig, const RegisterArguments& arguments, const Progress& progress) {
-    Installation room = defaultInstallation();
-    room.cameras.push_back({"Camera", "", defaultLabCamera(room.projectors.front().camera), {}, {}});
-    const Installation truth = trueRoom(room, rig.actuators(), arguments.seed);
-    RegistrationLabOptions options;
-    if (!arguments.fault.empty()) options.fault = parseTrackerFault(arguments.fault);
+std::vector<Stage> stagesOf(const std::shared_ptr<const Rig>& rig, const RegisterArguments& arguments,
+                            const Progress& progress) {
+    StageSite site{rig, withLabCamera(defaultInstallation())};
+    const Installation &room = site.room, truth = trueRoom(room, rig->actuators(), arguments.seed);
+    const glm::dvec3 device(truth.bodyFromDevice[3]);
+    LabBench lab(*rig, truth, arguments.seed, labWithFault("pointer", arguments.fault)); // one tracker for all of them
     std::vector<Stage> stages;
-    const auto run = [&](const char* name, const auto& measure, const auto& off) {
+    const auto run = [&](const char* key, const char* name, const auto& off) {
         if (!stages.empty() && !stages.back().result.good()) return;
         const double share = 0.25 * double(stages.size());
-        Registration result = measure(rig, room, truth, arguments.seed, progress.part(share, share + 0.25), options);
-        room = result.installation;
+        const Progress part = progress.part(share, share + 0.25);
+        auto result = std::get<Registration>(measureStage(calibrationStage(key), site, lab, part).result);
+        site.room = result.installation;
         stages.push_back({name, std::move(result), off()});
     };
-    run("pointer", measurePointerInLab, [&] { return fromTruth(room.pointerTip, truth.pointerTip); });
-    run("tracker", measureTrackerInLab, [&] {
-        return fromTruth(room.worldFromTracker, truth.worldFromTracker, {0.0, 0.0, 0.0});
-    });
-    run("device", measureDeviceInLab,
-        [&] { return fromTruth(room.bodyFromDevice, truth.bodyFromDevice, glm::dvec3(truth.bodyFromDevice[3])); });
-    run("eye", measureEyeInLab, [&] { return fromTruth(room.eyeFromHead, truth.eyeFromHead); });
+    run("pointer", "pointer", [&] { return fromTruth(room.pointerTip, truth.pointerTip); });
+    run("tracker", "tracker",
+        [&] { return fromTruth(room.worldFromTracker, truth.worldFromTracker, glm::dvec3(0.0)); });
+    run("body", "device", [&] { return fromTruth(room.bodyFromDevice, truth.bodyFromDevice, device); });
+    run("eye", "eye", [&] { return fromTruth(room.eyeFromHead, truth.eyeFromHead); });
     return stages;
 }
 
@@ -99,7 +98,7 @@ void print(const Stage& stage) {
 }
 
 void registerInLab(const RegisterArguments& arguments, const Session& session) {
-    const Rig rig = readRig(arguments.rig);
+    const auto rig = std::make_shared<const Rig>(readRig(arguments.rig));
     const std::vector<Stage> stages = stagesOf(rig, arguments, session.progress());
     Session::endProgress();
     const std::optional<Finding>& refusal = stages.back().result.refusal;

@@ -245,6 +245,35 @@ StepRecording stepInLab(const Actuator& actuator, const MeasuredServo& truth, co
     return recording;
 }
 
+/// One servo after the other. Those whose part the camera does not see are left out.
+std::vector<StepRecording> recordStepsInLab(const Rig& rig, const Installation& believed, const Installation& truth,
+                                            std::uint32_t seed, const Progress& progress,
+                                            const DelaysLabOptions& options) {
+    std::vector<StepRecording> recordings;
+    const CalibratedCamera camera = labCamera(believed);
+    const LabLens lens = lensOf(camera, "camera of the lab"), real = lensOf(labCamera(truth), "camera of the lab");
+    for (std::size_t i = 0; i < rig.actuatorCount(); ++i) {
+        progress.throwIfCancelled();
+        progress.report(double(i) / double(rig.actuatorCount()), "hands off: the servos move");
+        const std::vector<TriangleMesh> poses = posesOf(rig, i, believed.worldFromDevice);
+        const std::vector<std::size_t> marks = marksOf(poses, believed, camera);
+        if (marks.empty()) continue;
+        const Path seen = pathOf(poses, marks, lens);
+        const std::optional<StepRange> range = rangeOf(seen);
+        if (!range) continue;
+        const Actuator& actuator = rig.actuators()[i];
+        const auto found = std::ranges::find(truth.servos, actuator.name, &MeasuredServo::actuator);
+        const MeasuredServo servo = found == truth.servos.end() ? MeasuredServo{actuator.name, {}, 0.0} : *found;
+        const Path way = pathOf(posesOf(rig, i, truth.worldFromDevice), marks, real);
+        if (way.empty()) continue;
+        const bool faulty =
+            i == std::min(kFaultyServo, rig.actuatorCount() - 1) || options.fault < DelayFault::servoDead;
+        recordings.push_back(stepInLab(actuator, servo, seen, *range, way, seed + 100U * static_cast<std::uint32_t>(i),
+                                       faulty ? options.fault : DelayFault::none, options));
+    }
+    return recordings;
+}
+
 } // namespace
 
 DelayFault parseDelayFault(std::string_view text) {
@@ -320,43 +349,13 @@ MarkRecording recordMarkInLab(const Installation& truth, std::uint32_t seed, con
     return recording;
 }
 
-std::vector<StepRecording> recordStepsInLab(const Rig& rig, const Installation& believed, const Installation& truth,
-                                            std::uint32_t seed, const Progress& progress,
-                                            const DelaysLabOptions& options) {
-    if (rig.actuatorCount() > kMostSteppedServos)
-        throw InvalidInput("servos' lag", "the device has more than 64 actuators", "measure light and tracker alone");
-    std::vector<StepRecording> recordings;
-    const CalibratedCamera camera = servoCamera(believed);
-    const LabLens lens = lensOf(camera, "camera of the lab"), real = lensOf(servoCamera(truth), "camera of the lab");
-    for (std::size_t i = 0; i < rig.actuatorCount(); ++i) {
-        progress.throwIfCancelled();
-        progress.report(double(i) / double(rig.actuatorCount()), "hands off: the servos move");
-        const std::vector<TriangleMesh> poses = posesOf(rig, i, believed.worldFromDevice);
-        const std::vector<std::size_t> marks = marksOf(poses, believed, camera);
-        if (marks.empty()) continue;
-        const Path seen = pathOf(poses, marks, lens);
-        const std::optional<StepRange> range = rangeOf(seen);
-        if (!range) continue;
-        const Actuator& actuator = rig.actuators()[i];
-        const auto found = std::ranges::find(truth.servos, actuator.name, &MeasuredServo::actuator);
-        const MeasuredServo servo = found == truth.servos.end() ? MeasuredServo{actuator.name, {}, 0.0} : *found;
-        const Path way = pathOf(posesOf(rig, i, truth.worldFromDevice), marks, real);
-        if (way.empty()) continue;
-        const bool faulty =
-            i == std::min(kFaultyServo, rig.actuatorCount() - 1) || options.fault < DelayFault::servoDead;
-        recordings.push_back(stepInLab(actuator, servo, seen, *range, way, seed + 100U * static_cast<std::uint32_t>(i),
-                                       faulty ? options.fault : DelayFault::none, options));
-    }
-    return recordings;
-}
-
 DelaysCapture captureDelaysInLab(const Rig& rig, const Installation& believed, const Installation& truth,
                                  std::uint32_t seed, const Progress& progress, const DelaysLabOptions& options) {
     const auto begin = [&](double share, const char* stage) {
         progress.throwIfCancelled();
         progress.report(share, stage);
     };
-    (void)servoCamera(believed); // throws without a projector
+    (void)labCamera(believed); // throws without a projector
     DelaysCapture capture;
     begin(0.0, "flashing");
     capture.flashes = recordFlashesInLab(truth, seed, options);
@@ -369,7 +368,7 @@ DelaysCapture captureDelaysInLab(const Rig& rig, const Installation& believed, c
     const CalibrationBoard board = parseCalibrationBoard("chess:9x7:20");
     // Both by this machine's clock: a pose of the tracker is older than it says, one of the camera is not.
     BoardCapture turned =
-        lab.moveBoard(servoCamera(truth), board, 0.001, glm::dvec3(0.5), options.boardSeconds, -truth.trackerSeconds);
+        lab.moveBoard(labCamera(truth), board, 0.001, glm::dvec3(0.5), options.boardSeconds, -truth.trackerSeconds);
     capture.tracked = std::move(turned.body);
     capture.seen = std::move(turned.board);
     capture.seconds = capture.flashes.flashes.back().off + options.markSeconds + options.boardSeconds;
@@ -380,18 +379,8 @@ DelaysCapture captureDelaysInLab(const Rig& rig, const Installation& believed, c
     return capture;
 }
 
-MeasuredDelays measureDelaysInLab(const Rig& rig, const Installation& believed, const Installation& truth,
-                                  std::uint32_t seed, const Progress& progress, const DelaysLabOptions& options) {
-    const DelaysCapture capture = captureDelaysInLab(rig, believed, truth, seed, progress.part(0.0, 0.3), options);
-    MeasuredDelays delays = solveDelays(rig, believed, capture, progress.part(0.3, 1.0));
-    if (delays.refusal) return delays;
-    markSimulated(believed, delays.installation);
-    delays.gain = slipInLab(delays.installation, truth, seed, options.errors);
-    return delays;
-}
-
-PredictionGain slipInLab(const Installation& believed, const Installation& truth, std::uint32_t seed,
-                         const LabErrors& errors) {
+PredictionGain slipInLab(const Installation& believed, const Installation& truth, std::uint32_t seed) {
+    const LabErrors errors;
     CarriedDevice carried;
     carried.noiseMetres = 1e-3 * errors.trackerNoiseMillimetres;
     carried.noiseRadians = errors.trackerNoiseDegrees * std::numbers::pi / 180.0;

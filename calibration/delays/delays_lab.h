@@ -7,8 +7,8 @@
 #include "calibration/delays/delays_calibration.h"
 #include "calibration/lab/true_room.h"
 
-/// All delays measured in the virtual lab from beginning to end: what hardware would be asked to do is done in the true
-/// room, with the noise of its tracker and camera, and solved as that of hardware is.
+/// What delays are measured by, recorded in the virtual lab: what hardware would be asked to do is done in the true
+/// room, with the noise of its tracker and camera.
 namespace lumorph {
 
 /// What can be wrong while delays are measured.
@@ -45,27 +45,13 @@ struct DelaysLabOptions {
                                                 const DelaysLabOptions& options = {});
 [[nodiscard]] MarkRecording recordMarkInLab(const Installation& truth, std::uint32_t seed,
                                             const DelaysLabOptions& options = {});
-/// One servo after the other. Those whose part the camera does not see are left out. Throws InvalidInput for more than
-/// 64 actuators.
-[[nodiscard]] std::vector<StepRecording> recordStepsInLab(const Rig& rig, const Installation& believed,
-                                                          const Installation& truth, std::uint32_t seed,
-                                                          const Progress& progress = {},
-                                                          const DelaysLabOptions& options = {});
-
 /// All that is recorded of them. Throws Cancelled; InvalidInput without a projector.
 [[nodiscard]] DelaysCapture captureDelaysInLab(const Rig& rig, const Installation& believed, const Installation& truth,
                                                std::uint32_t seed, const Progress& progress = {},
                                                const DelaysLabOptions& options = {});
 
-/// Recorded and solved, with what it gains in the true room. Throws Cancelled, which leaves nothing behind;
-/// InvalidInput without a projector.
-[[nodiscard]] MeasuredDelays measureDelaysInLab(const Rig& rig, const Installation& believed, const Installation& truth,
-                                                std::uint32_t seed, const Progress& progress = {},
-                                                const DelaysLabOptions& options = {});
-
 /// How far light lies beside on a device that a hand carries at 0.3 m/s at most through `truth`, with the delays that
 /// are believed and without prediction. All else is taken to be right, since this is what delays are worth.
-[[nodiscard]] PredictionGain slipInLab(const Installation& believed, const Installation& truth, std::uint32_t seed,
-                                       const LabErrors& errors = {});
+[[nodiscard]] PredictionGain slipInLab(const Installation& believed, const Installation& truth, std::uint32_t seed);
 
 } // namespace lumorph

@@ -491,6 +491,17 @@ CalibratedCamera defaultLabCamera(const CalibratedCamera& projector) {
     return camera;
 }
 
+CalibratedCamera labCamera(const Installation& room) {
+    if (room.projectors.empty()) throw InvalidInput("installation", "it has no projector", "add one in the studio");
+    return room.cameras.empty() ? defaultLabCamera(room.projectors.front().camera) : room.cameras.front().camera;
+}
+
+Installation withLabCamera(Installation room) {
+    const CalibratedCamera camera = labCamera(room);
+    if (room.cameras.empty()) room.cameras.push_back({"Camera", "", camera, {}, {}});
+    return room;
+}
+
 CalibratedCamera withSize(CalibratedCamera camera, glm::ivec2 size) {
     if (size.x < 16 || size.y < 16)
         throw InvalidInput("size of the camera's picture", "it has fewer than 16 pixels a side", "give a larger one");

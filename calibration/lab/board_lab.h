@@ -97,6 +97,11 @@ private:
 
 /// A camera of 1280 x 1024 beside the projector that sees the place it lights, with a distortion as lenses have.
 [[nodiscard]] CalibratedCamera defaultLabCamera(const CalibratedCamera& projector);
+/// A room's first camera, or where it has none that of the lab beside its first projector. Throws InvalidInput without
+/// a projector.
+[[nodiscard]] CalibratedCamera labCamera(const Installation& room);
+/// The room with it.
+[[nodiscard]] Installation withLabCamera(Installation room);
 
 /// The same camera with another number of pixels: the image is as wide as before, and as high as its shape says.
 [[nodiscard]] CalibratedCamera withSize(CalibratedCamera camera, glm::ivec2 size);

@@ -21,7 +21,6 @@ namespace {
 
 constexpr int kPixelStep = 5;        ///< camera pixels between rays of structured light
 constexpr double kDecodeNoise = 0.1; ///< pixels
-constexpr double kLeastAngle = 0.05; ///< radians between rays that meet in a point
 constexpr std::size_t kTouchesADimple = 3;
 
 /// Recordings of one step differ from those of the others.
@@ -55,21 +54,6 @@ std::vector<PlannedDot> dotsFor(const Rig& rig, const Installation& believed, st
     if (dots.size() < count)
         throw InvalidInput("dots in the lab", "there is no room for them beside the device", "light more of the table");
     return dots;
-}
-
-CalibratedCamera cameraIn(const Installation& room) {
-    return room.cameras.empty() ? defaultLabCamera(firstProjector(room).camera) : room.cameras.front().camera;
-}
-
-/// The point nearest to two rays; nothing where they run alike.
-std::optional<glm::dvec3> meeting(const glm::dvec3& a, const glm::dvec3& alongA, const glm::dvec3& b,
-                                  const glm::dvec3& alongB) {
-    const double cosine = glm::dot(alongA, alongB), sine2 = 1.0 - cosine * cosine;
-    if (sine2 < kLeastAngle * kLeastAngle) return std::nullopt;
-    const glm::dvec3 from = b - a;
-    const double s = (glm::dot(from, alongA) - cosine * glm::dot(from, alongB)) / sine2;
-    const double t = (cosine * glm::dot(from, alongA) - glm::dot(from, alongB)) / sine2;
-    return 0.5 * (a + s * alongA + b + t * alongB);
 }
 
 /// Where the camera sees the projector's light, and what it reads there, off by the noise of both.
@@ -115,18 +99,6 @@ std::vector<TouchedLandmark> touchAll(TrackerLab& lab, const std::vector<Planned
         touches.push_back(
             {planned[i].onModel, planned[i].outward, lab.touchDevice(numbered(what, i - from), planned[i].onModel)});
     return touches;
-}
-
-/// What light tells of the device, where it does: where it is refused, what was touched still holds.
-Registration betterOf(Registration touched, const Registration& lit) {
-    if (lit.good()) return lit;
-    if (lit.refusal) touched.warnings.push_back(*lit.refusal);
-    return touched;
-}
-
-Registration madeInLab(const Installation& believed, Registration made) {
-    markSimulated(believed, made.installation);
-    return made;
 }
 
 } // namespace
@@ -177,7 +149,7 @@ LitDeviceCapture captureLitDeviceInLab(const Rig& rig, const Installation& truth
     LabWorld world = roomWorld(truth, rig, strokesAtRest(rig, truth));
     world.projectors = {{projector, {}}};
     LitDeviceCapture capture;
-    capture.light = decodedLight(Lab(std::move(world)), lensOf(cameraIn(truth), "camera of the lab"),
+    capture.light = decodedLight(Lab(std::move(world)), lensOf(labCamera(truth), "camera of the lab"),
                                  lensOf(projector.camera, "projector of the lab"), seedOf(seed, Step::surface));
     TrackerLab lab = labOf(truth, seed, Step::surface, options);
     capture.body = lab.recordDevice(3.0);
@@ -187,26 +159,6 @@ LitDeviceCapture captureLitDeviceInLab(const Rig& rig, const Installation& truth
 
 TriangleMesh shapeAtRest(const Rig& rig, const Installation& believed) {
     return deformed(rig, strokesAtRest(rig, believed));
-}
-
-SurfaceCapture captureSurfaceInLab(const Rig& rig, const Installation& believed, const Installation& truth,
-                                   std::uint32_t seed, const RegistrationLabOptions& options) {
-    LitDeviceCapture lit = captureLitDeviceInLab(rig, truth, seed, options);
-    const CalibratedCamera camera = cameraIn(truth);
-    const LabLens eye = lensOf(camera, "camera of the lab"),
-                  lamp = lensOf(firstProjector(truth).camera, "projector of the lab");
-    SurfaceCapture capture;
-    capture.model = shapeAtRest(rig, believed);
-    capture.seenFrom = positionOf(camera);
-    for (const ProjectorPoint& point : lit.light) {
-        const auto seen = rayThrough(eye, {point.camera.x, point.camera.y}),
-                   light = rayThrough(lamp, {point.projector.x, point.projector.y});
-        if (!seen || !light) continue;
-        if (const auto place = meeting(eye.position, *seen, lamp.position, *light)) capture.points.push_back(*place);
-    }
-    capture.body = std::move(lit.body);
-    capture.fresh = std::move(lit.fresh);
-    return capture;
 }
 
 EyeCapture captureEyeInLab(const Rig& rig, const Installation& believed, const Installation& truth, std::uint32_t seed,
@@ -223,75 +175,6 @@ EyeCapture captureEyeInLab(const Rig& rig, const Installation& believed, const I
         (fits ? capture.alignments : capture.fresh).push_back(lab.align(name, marks[i].place, eye));
     }
     return capture;
-}
-
-Registration measurePointerInLab(const Rig&, const Installation& believed, const Installation& truth,
-                                 std::uint32_t seed, const Progress& progress, const RegistrationLabOptions& options) {
-    progress.throwIfCancelled();
-    progress.report(0.0, "swinging the pointer");
-    const PointerCapture capture = capturePointerInLab(truth, seed, options);
-    return madeInLab(believed, registerPointer(capture, believed, progress.part(0.7, 1.0)));
-}
-
-Registration measureTrackerInLab(const Rig& rig, const Installation& believed, const Installation& truth,
-                                 std::uint32_t seed, const Progress& progress, const RegistrationLabOptions& options) {
-    progress.throwIfCancelled();
-    progress.report(0.0, "touching projected dots");
-    const DotCapture capture = captureDotsInLab(rig, believed, truth, seed, options);
-    return madeInLab(believed, registerTracker(capture, believed, progress.part(0.7, 1.0)));
-}
-
-Registration measureDeviceInLab(const Rig& rig, const Installation& believed, const Installation& truth,
-                                std::uint32_t seed, const Progress& progress, const RegistrationLabOptions& options) {
-    progress.throwIfCancelled();
-    progress.report(0.0, "touching points of the device");
-    const LandmarkCapture capture = captureLandmarksInLab(rig, truth, seed, options);
-    const Registration touched = registerDevice(capture, believed, progress.part(0.3, 0.5));
-    if (!touched.good() || believed.cameras.empty()) return madeInLab(believed, touched);
-    progress.throwIfCancelled();
-    progress.report(0.5, "structured light on the device");
-    const SurfaceCapture lit = captureSurfaceInLab(rig, believed, truth, seed, options);
-    return madeInLab(believed, betterOf(touched, registerDevice(lit, touched.installation, progress.part(0.7, 1.0))));
-}
-
-Registration measureEyeInLab(const Rig& rig, const Installation& believed, const Installation& truth,
-                             std::uint32_t seed, const Progress& progress, const RegistrationLabOptions& options) {
-    progress.throwIfCancelled();
-    progress.report(0.0, "covering marks with the tip");
-    const EyeCapture capture = captureEyeInLab(rig, believed, truth, seed, options);
-    return madeInLab(believed, registerEye(capture, believed, progress.part(0.7, 1.0)));
-}
-
-Registration measureAllInLab(const Rig& rig, const Installation& believed, const Installation& truth,
-                             std::uint32_t seed, const Progress& progress, const RegistrationLabOptions& options) {
-    const Registration pointer = measurePointerInLab(rig, believed, truth, seed, progress.part(0.0, 0.2), options);
-    if (!pointer.good()) return pointer;
-    // What is true for the steps is what was believed before any of them, where one is refused.
-    const auto refusedAs = [&](Registration refused) {
-        refused.installation = believed;
-        return refused;
-    };
-    progress.throwIfCancelled();
-    JointCapture capture;
-    capture.pivotTip = glm::dvec3(pointer.installation.pointerTip);
-    capture.pivotSigma = glm::dvec3(pointer.shiftSigma / std::sqrt(3.0));
-    capture.dots = captureDotsInLab(rig, believed, truth, seed, options);
-    const Registration tracker = registerTracker(capture.dots, pointer.installation, progress.part(0.2, 0.4));
-    if (!tracker.good()) return refusedAs(tracker);
-    capture.landmarks = captureLandmarksInLab(rig, truth, seed, options);
-    const Registration device = registerDevice(capture.landmarks, tracker.installation, progress.part(0.4, 0.5));
-    if (!device.good()) return refusedAs(device);
-    capture.eye = captureEyeInLab(rig, believed, truth, seed, options);
-    const Registration eye = registerEye(capture.eye, device.installation, progress.part(0.5, 0.6));
-    if (!eye.good()) return refusedAs(eye);
-    Registration all = registerJointly(capture, eye.installation, progress.part(0.6, 0.8));
-    if (!all.good()) return refusedAs(all);
-    if (believed.cameras.empty()) return madeInLab(believed, all);
-    const SurfaceCapture lit = captureSurfaceInLab(rig, believed, truth, seed, options);
-    const Registration seen = betterOf(all, registerDevice(lit, all.installation, progress.part(0.8, 1.0)));
-    all.installation = seen.installation;
-    all.warnings = seen.warnings;
-    return madeInLab(believed, all);
 }
 
 } // namespace lumorph

@@ -5,11 +5,10 @@
 #include "calibration/lab/tracker_lab.h"
 #include "calibration/registration/registration.h"
 #include "calibration/solve/observations.h"
-#include "core/base/progress.h"
 #include "core/rig/rig.h"
 
-/// Tracker, pointer, device and eye registered in the virtual lab from beginning to end: what a visitor would be asked
-/// to do is done in the true room, with the noise of tracker and hands, and solved as that of hardware is.
+/// What tracker, pointer, device and eye are registered by, recorded in the virtual lab: what a visitor would be asked
+/// to do is done in the true room, with the noise of tracker and hands.
 namespace lumorph {
 
 struct RegistrationLabOptions {
@@ -38,36 +37,9 @@ struct LitDeviceCapture {
 /// with a tenth of a pixel of noise at both ends.
 [[nodiscard]] LitDeviceCapture captureLitDeviceInLab(const Rig& rig, const Installation& truth, std::uint32_t seed,
                                                      const RegistrationLabOptions& options = {});
-/// The same as places in the room.
-[[nodiscard]] SurfaceCapture captureSurfaceInLab(const Rig& rig, const Installation& believed,
-                                                 const Installation& truth, std::uint32_t seed,
-                                                 const RegistrationLabOptions& options = {});
 /// The device's shape at rest as a room believes its servos to leave it, device frame.
 [[nodiscard]] TriangleMesh shapeAtRest(const Rig& rig, const Installation& believed);
 [[nodiscard]] EyeCapture captureEyeInLab(const Rig& rig, const Installation& believed, const Installation& truth,
                                          std::uint32_t seed, const RegistrationLabOptions& options = {});
-
-// Recorded and solved. Where it is refused the installation is `believed`. Throws Cancelled.
-
-[[nodiscard]] Registration measurePointerInLab(const Rig& rig, const Installation& believed, const Installation& truth,
-                                               std::uint32_t seed, const Progress& progress = {},
-                                               const RegistrationLabOptions& options = {});
-/// By touched dots. The pointer's tip was measured before.
-[[nodiscard]] Registration measureTrackerInLab(const Rig& rig, const Installation& believed, const Installation& truth,
-                                               std::uint32_t seed, const Progress& progress = {},
-                                               const RegistrationLabOptions& options = {});
-/// By touched landmarks, and where the room has a camera, from there on by structured light on the device. The
-/// pointer's tip, for the light also the tracker, was measured before.
-[[nodiscard]] Registration measureDeviceInLab(const Rig& rig, const Installation& believed, const Installation& truth,
-                                              std::uint32_t seed, const Progress& progress = {},
-                                              const RegistrationLabOptions& options = {});
-/// By alignments. Pointer and tracker were measured before.
-[[nodiscard]] Registration measureEyeInLab(const Rig& rig, const Installation& believed, const Installation& truth,
-                                           std::uint32_t seed, const Progress& progress = {},
-                                           const RegistrationLabOptions& options = {});
-/// All four, one after the other, then solved together. The first that is refused ends it.
-[[nodiscard]] Registration measureAllInLab(const Rig& rig, const Installation& believed, const Installation& truth,
-                                           std::uint32_t seed, const Progress& progress = {},
-                                           const RegistrationLabOptions& options = {});
 
 } // namespace lumorph

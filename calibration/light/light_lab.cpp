@@ -34,13 +34,6 @@ double developed(double light, const LightLabOptions& options) {
     return options.pedestal + (255.0 - options.pedestal) * value;
 }
 
-CalibratedCamera cameraOf(const Installation& room, int width) {
-    if (room.projectors.empty())
-        throw InvalidInput("light by camera", "the room has no projector", "add and calibrate one first");
-    return lightCamera(
-        room.cameras.empty() ? defaultLabCamera(room.projectors.front().camera) : room.cameras.front().camera, width);
-}
-
 /// Turned away by a third of a turn about the vertical axis through itself.
 CalibratedCamera lookingAside(const CalibratedCamera& camera) {
     const glm::dvec3 place = positionOf(camera);
@@ -171,23 +164,8 @@ cv::Mat LightLab::photograph(const LightShow& show, double seconds) {
 }
 
 CalibratedCamera lightLabCamera(const Installation& truth, const LightLabOptions& options) {
-    const CalibratedCamera camera = cameraOf(truth, options.cameraWidth);
+    const CalibratedCamera camera = lightCamera(labCamera(truth));
     return options.fault == LightFault::unseen ? lookingAside(camera) : camera;
-}
-
-LightCalibration measureLightInLab(const Rig& rig, const Installation& believed, const Installation& truth,
-                                   std::uint32_t seed, const Progress& progress, const LightLabOptions& options) {
-    progress.report(0.0, "looking for what the camera sees in the light");
-    const CalibratedCamera camera = cameraOf(believed, options.cameraWidth);
-    std::optional<WhiteSheet> sheet;
-    if (options.laysSheet) sheet = placeForSheet(believed, rig, camera);
-    const std::vector<LightPatch> patches = lightPatches(believed, rig, camera, sheet);
-    progress.throwIfCancelled();
-    LightLab lab(truth, rig, lightLabCamera(truth, options), sheet, options, seed);
-    LightCalibration result = measureLight(believed, patches, lab, progress.part(0.1, 1.0));
-    markSimulated(believed, result.room);
-    if (options.laysSheet && !sheet) result.warnings.push_back(noRoomForSheet());
-    return result;
 }
 
 } // namespace lumorph

@@ -24,7 +24,6 @@ enum class LightFault {
 
 /// The lab's camera for light: three channels of 8 bits with a curve of its own.
 struct LightLabOptions {
-    int cameraWidth = 320;    ///< pixels of its pictures
     double gamma = 2.3;       ///< of its curve
     double toe = 0.012;       ///< light, as a share of what is cut off, below which the curve is straight
     double shoulder = 0.12;   ///< by which bright light is held down
@@ -66,14 +65,8 @@ private:
     std::uint32_t seed_, pictures_ = 0;
 };
 
-/// The lab's camera for light in a room as it truly is: its first, or one as the lab has it, with pictures of the
-/// options' width. Throws InvalidInput for a room without a projector.
+/// The lab's camera for light in a room as it truly is: its first, or one as the lab has it, by `lightCamera`. Throws
+/// InvalidInput for a room without a projector.
 [[nodiscard]] CalibratedCamera lightLabCamera(const Installation& truth, const LightLabOptions& options = {});
-
-/// Lays the sheet, photographs and measures, all in the lab: the room as it truly is, seen as it is believed to be. By
-/// the first camera of the room, or one as the lab has it. Throws as `measureLight`.
-[[nodiscard]] LightCalibration measureLightInLab(const Rig& rig, const Installation& believed,
-                                                 const Installation& truth, std::uint32_t seed,
-                                                 const Progress& progress = {}, const LightLabOptions& options = {});
 
 } // namespace lumorph

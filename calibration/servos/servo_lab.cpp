@@ -10,7 +10,6 @@
 #include "calibration/lab/board_lab.h"
 #include "calibration/lab/lab.h"
 #include "calibration/lab/lab_world.h"
-#include "calibration/servos/surface_points.h"
 #include "core/base/error.h"
 #include "core/scene/measured_servos.h"
 
@@ -50,15 +49,8 @@ std::vector<std::size_t> faultyServos(ServoFault fault, std::size_t actuators) {
     return {std::min(static_cast<std::size_t>(fault), actuators - 1)};
 }
 
-CalibratedCamera servoCamera(const Installation& room) {
-    if (room.projectors.empty())
-        throw InvalidInput("servos by camera", "the room has no projector", "add and calibrate one first");
-    if (!room.cameras.empty()) return room.cameras.front().camera;
-    return defaultLabCamera(room.projectors.front().camera);
-}
-
 ServoLab::ServoLab(const Rig& rig, const Installation& truth, std::uint32_t seed, const ServoLabOptions& options)
-    : rig_(rig), room_(truth), camera_(servoCamera(truth)), options_(options), real_(rig.actuatorCount(), 0.0),
+    : rig_(rig), room_(truth), camera_(labCamera(truth)), options_(options), real_(rig.actuatorCount(), 0.0),
       dice_(seed * 7919U + 1U) {
     for (const Actuator& actuator : rig.actuators()) {
         const auto found = std::ranges::find(truth.servos, actuator.name, &MeasuredServo::actuator);
@@ -127,19 +119,6 @@ std::vector<int> ServoLab::seen(std::span<const double> strokes) const {
         for (const std::uint16_t i : rig_.actuatorsOf(corners.x)) ++counts[i];
     });
     return counts;
-}
-
-ServoMeasurement measureServosInLab(const Rig& rig, const Installation& believed, const Installation& truth,
-                                    std::uint32_t seed, const Progress& progress, const ServoLabOptions& options) {
-    ServoLab lab(rig, truth, seed, options);
-    const CalibratedCamera camera = servoCamera(believed);
-    const auto look = [&](const std::vector<double>& commanded, const Progress&) {
-        lab.command(commanded);
-        return surfacePoints(lab.look(), camera, believed.projectors.front().camera);
-    };
-    ServoMeasurement result = measureServos(rig, believed, seed, look, progress, options.plan);
-    markSimulated(believed, result.room);
-    return result;
 }
 
 } // namespace lumorph

@@ -23,7 +23,6 @@ enum class ServoFault {
 inline constexpr double kLabStop = 0.55;
 
 struct ServoLabOptions {
-    ServoPlanOptions plan;
     std::optional<ServoFault> fault;
     int pixelStep = 7;         ///< camera pixels between two points
     double decodeSigma = 0.15; ///< projector pixels, of each coordinate of each point
@@ -64,13 +63,5 @@ private:
     std::vector<double> real_;
     std::uint32_t dice_;
 };
-
-/// The camera that looks at the device: the installation's first, else one as the lab has it.
-[[nodiscard]] CalibratedCamera servoCamera(const Installation& room);
-
-/// `measureServos` in the lab, with projector and camera as `believed` says.
-[[nodiscard]] ServoMeasurement measureServosInLab(const Rig& rig, const Installation& believed,
-                                                  const Installation& truth, std::uint32_t seed,
-                                                  const Progress& progress = {}, const ServoLabOptions& options = {});
 
 } // namespace lumorph

@@ -72,18 +72,4 @@ int picturesOfLook(const Installation& room) {
     return static_cast<int>(parsePattern(kPattern, {panel.x, panel.y}).images.size());
 }
 
-ServoMeasurement measureServosOnBench(const Rig& rig, const Installation& believed, std::uint32_t seed,
-                                      DeviceBench& bench, const Progress& progress, const ServoPlanOptions& options) {
-    if (believed.cameras.empty() || believed.projectors.empty())
-        throw InvalidInput("servos by camera", "the room has no projector or no camera",
-                           "calibrate projector and camera first");
-    const auto look = [&](const std::vector<double>& commanded, const Progress& part) {
-        return surfacePoints(lookBy(bench, believed, commanded, part), believed.cameras.front().camera,
-                             believed.projectors.front().camera);
-    };
-    ServoPlanOptions plan = options;
-    plan.pictures = picturesOfLook(believed);
-    return measureServos(rig, believed, seed, look, progress, plan);
-}
-
 } // namespace lumorph

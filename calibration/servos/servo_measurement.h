@@ -35,9 +35,4 @@ using ServoLook = std::function<ServoPass(const std::vector<double>& commanded, 
 /// Pictures that it takes.
 [[nodiscard]] int picturesOfLook(const Installation& room);
 
-/// The same by the first projector and camera of a bench, under phase shifts.
-[[nodiscard]] ServoMeasurement measureServosOnBench(const Rig& rig, const Installation& believed, std::uint32_t seed,
-                                                    DeviceBench& bench, const Progress& progress = {},
-                                                    const ServoPlanOptions& options = {});
-
 } // namespace lumorph

@@ -3,6 +3,7 @@
 #include <string>
 #include <utility>
 
+#include "calibration/verify/room_verification.h"
 #include "core/base/error.h"
 
 namespace lumorph {

@@ -1,19 +1,12 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 
+#include "calibration/capture/device_bench.h"
 #include "calibration/lab/check_lab.h"
-#include "calibration/verify/room_verification.h"
 
 namespace lumorph {
-
-/// How a check is made in the virtual lab.
-struct VerifyLabOptions : VerifyOptions {
-    CheckLabOptions pictures;
-};
-
-/// An installation's camera, or where it has none that of the lab beside its first projector.
-[[nodiscard]] Installation withLabCamera(Installation room);
 
 /// The virtual lab as a bench: the device as its true servos let it stand, and pictures with the lab's noise. It comes
 /// to each stand from below, which is all that a check asks. The rig outlives it.
@@ -32,10 +25,5 @@ private:
     std::vector<double> commanded_;
     std::optional<CheckLab> lab_; ///< of this stand, once it is looked at
 };
-
-/// `verifyRoom` in the room as it truly is. Throws InvalidInput for rooms without a projector, Cancelled.
-[[nodiscard]] VerifiedRoom measureVerifyInLab(const Rig& rig, const Installation& believed, const Installation& truth,
-                                              std::uint32_t seed, const Progress& progress = {},
-                                              const VerifyLabOptions& options = {});
 
 } // namespace lumorph

@@ -11,19 +11,19 @@
 
 #include <gtest/gtest.h>
 
-#include "calibration/delays/delays_lab.h"
 #include "calibration/lab/board_lab.h"
 #include "calibration/lab/tracker_lab.h"
-#include "calibration/servos/servo_lab.h"
-#include "calibration/verify/verify_lab.h"
 #include "core/base/error.h"
 #include "core/loop/viewer_stage.h"
 #include "core/scene/measured_servos.h"
+#include "tests/calibration/measured_stage.h"
 #include "tests/calibration/tracked_motion.h"
 #include "tests/support/cut_tablet.h"
 
 namespace lumorph {
 namespace {
+
+using test::measuredInLab;
 
 bool delaysTakeLong() { return std::getenv("LUMORPH_LONG_TESTS") != nullptr; }
 
@@ -269,7 +269,7 @@ TEST(DelaysLab, AllDelaysComeOutAsTheLabHasThem) {
     for (int seed = 1; seed <= seeds; ++seed) {
         const Installation believed = withLabCamera(defaultInstallation());
         const Installation truth = trueRoom(believed, delayTablet().actuators(), seed);
-        const MeasuredDelays delays = measureDelaysInLab(delayTablet(), believed, truth, seed);
+        const auto delays = measuredInLab<MeasuredDelays>("delays", delayTablet(), believed, truth, seed);
         ASSERT_TRUE(delays.good()) << delays.summary;
         std::printf("%s It takes %.0f s.\n", delays.summary.c_str(), delays.seconds);
         std::printf("  light %+.2f ms (sigma %.2f), tracker %+.2f (%.2f), mark %+.2f (%.2f)\n",
@@ -306,11 +306,11 @@ TEST(DelaysLab, AllDelaysComeOutAsTheLabHasThem) {
 }
 
 /// What is wrong shows in short recordings too.
-DelaysLabOptions briefly() {
-    DelaysLabOptions options;
-    options.flashes = 16;
-    options.markSeconds = 8.0;
-    options.boardSeconds = 15.0;
+LabBenchOptions briefly() {
+    LabBenchOptions options;
+    options.delays.flashes = 16;
+    options.delays.markSeconds = 8.0;
+    options.delays.boardSeconds = 15.0;
     return options;
 }
 
@@ -329,20 +329,22 @@ TEST(DelaysLab, NamesAFaultAndKeepsNothing) {
                                      {"still", "nothing_moves"},
                                      {"dead", "servo_dead"},
                                      {"jammed", "servo_jammed"}}) {
-        DelaysLabOptions options = briefly();
-        options.fault = parseDelayFault(row.fault);
-        const MeasuredDelays delays = measureDelaysInLab(delayTablet(), believed, truth, 4, {}, options);
+        LabBenchOptions options = briefly();
+        options.delays.fault = parseDelayFault(row.fault);
+        const auto delays = measuredInLab<MeasuredDelays>("delays", delayTablet(), believed, truth, 4, options);
         ASSERT_TRUE(delays.refusal) << row.fault << ": " << delays.summary;
         EXPECT_EQ(keyOf(delays.refusal->cause), row.cause) << row.fault << ": " << delays.summary;
         EXPECT_EQ(delays.installation, believed) << row.fault;
     }
-    DelaysLabOptions lost = briefly();
-    lost.fault = DelayFault::framesLost;
-    EXPECT_TRUE(measureDelaysInLab(delayTablet(), believed, truth, 4, {}, lost).good()) << "lost pictures do no harm";
+    LabBenchOptions lost = briefly();
+    lost.delays.fault = DelayFault::framesLost;
+    EXPECT_TRUE(measuredInLab<MeasuredDelays>("delays", delayTablet(), believed, truth, 4, lost).good())
+        << "lost pictures do no harm";
     EXPECT_THROW((void)parseDelayFault("tired"), InvalidInput);
     std::stop_source stop;
     stop.request_stop();
-    EXPECT_THROW((void)measureDelaysInLab(delayTablet(), believed, truth, 4, Progress({}, stop.get_token())),
+    EXPECT_THROW((void)measuredInLab<MeasuredDelays>("delays", delayTablet(), believed, truth, 4, {},
+                                                     Progress({}, stop.get_token())),
                  Cancelled);
 }
 

@@ -6,14 +6,12 @@
 #include <glm/gtc/matrix_transform.hpp>
 #include <gtest/gtest.h>
 
-#include "calibration/delays/delays_lab.h"
 #include "calibration/lab/board_lab.h"
 #include "calibration/lab/lab_lens.h"
-#include "calibration/lab/registration_lab.h"
-#include "calibration/light/light_lab.h"
 #include "calibration/report/calibrated_room.h"
-#include "calibration/servos/servo_lab.h"
 #include "calibration/solve/error_map.h"
+#include "calibration/stages/lab_bench.h"
+#include "calibration/stages/stage.h"
 #include "tests/support/chain_judge.h"
 #include "tests/support/cut_tablet.h"
 #include "tests/support/long_tests.h"
@@ -111,26 +109,17 @@ std::vector<double> sharesOfMap(const Calibrated& calibrated, const Installation
     return shares;
 }
 
-/// The links after projector and camera, in the order in which the studio's chain has them, each as the studio measures
-/// it in its lab: all from the room as the links before left it.
-Installation measureLinks(const Rig& rig, Installation room, const Installation& truth, std::uint32_t seed) {
-    const auto use = [&](const char* link, const Registration& measured) {
-        EXPECT_TRUE(measured.good()) << link << ": " << measured.summary;
-        room = measured.installation;
-    };
-    const LightCalibration light = measureLightInLab(rig, room, truth, seed);
-    EXPECT_TRUE(light.good());
-    room = light.room;
-    use("pointer", measurePointerInLab(rig, room, truth, seed));
-    use("tracker", measureTrackerInLab(rig, room, truth, seed + 1));
-    use("device", measureDeviceInLab(rig, room, truth, seed + 2));
-    use("eye", measureEyeInLab(rig, room, truth, seed + 3));
-    const ServoMeasurement servos = measureServosInLab(rig, room, truth, seed + 4);
-    EXPECT_TRUE(servos.measured.usable);
-    room = servos.room;
-    const MeasuredDelays delays = measureDelaysInLab(rig, room, truth, seed + 5);
-    EXPECT_TRUE(delays.good()) << delays.summary;
-    takeDelays(delays.installation, room);
+/// The stages after projector and camera, each from the room as the stages before left it.
+Installation measureStages(const Rig& rig, Installation room, const Installation& truth, std::uint32_t seed) {
+    constexpr std::pair<const char*, std::uint32_t> kStages[] = {
+        {"light", 0}, {"pointer", 0}, {"tracker", 1}, {"body", 2}, {"eye", 3}, {"servos", 4}, {"delays", 5}};
+    for (const auto& [key, more] : kStages) {
+        const CalibrationStage& stage = calibrationStage(key);
+        LabBench lab(rig, truth, seed + more);
+        const StageResult result = measureStage(stage, {{std::shared_ptr<const Rig>(), &rig}, room}, lab).result;
+        EXPECT_TRUE(isGood(result)) << key;
+        stage.apply(roomOf(result), room);
+    }
     return room;
 }
 
@@ -182,7 +171,7 @@ TEST(EndToEnd, TheWholeChainShowsWhatTheEyeShouldSee) {
         EXPECT_LE(quantileOf(shares, 0.95), 1.0) << "inside the predicted map in 95 of 100 places";
         EXPECT_GE(meanOf(shares), 0.04) << "a map that says nothing";
 
-        const Installation estimated = measureLinks(*rig, calibrated.room, truth, 10 * seed);
+        const Installation estimated = measureStages(*rig, calibrated.room, truth, 10 * seed);
         const ShownError shown = shownError(rig, estimated, truth);
         print("whole chain", shown);
         EXPECT_GE(shown.judgedBalls, 20U);

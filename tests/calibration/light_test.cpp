@@ -11,13 +11,15 @@
 
 #include "calibration/lab/true_room.h"
 #include "calibration/light/camera_response.h"
-#include "calibration/light/light_lab.h"
 #include "core/render/gl/headless_context.h"
 #include "core/scene/projector_response.h"
+#include "tests/calibration/measured_stage.h"
 #include "tests/calibration/show_world.h"
 
 namespace lumorph {
 namespace {
+
+using test::measuredInLab;
 
 /// The light that makes a byte, of a camera with a toe, a shoulder and a black of its own.
 double byteOfLight(double light) {
@@ -131,7 +133,7 @@ TEST(LightTest, OfAProjectorIsMeasuredWithTheColoursOfDeviceAndTable) {
     const Installation believed = defaultInstallation();
     for (const std::uint32_t seed : {1U, 2U}) {
         const Installation truth = trueRoom(believed, bundledTablet()->actuators(), seed);
-        const LightCalibration found = measureLightInLab(*bundledTablet(), believed, truth, seed);
+        const auto found = measuredInLab<LightCalibration>("light", *bundledTablet(), believed, truth, seed);
         const LightErrors errors = errorsOf(found.room, truth);
         printErrors("with a white sheet", found, errors);
         for (const std::string& figure : found.figures) std::printf("  %s\n", figure.c_str());
@@ -160,9 +162,9 @@ TEST(LightTest, OfAProjectorIsMeasuredWithTheColoursOfDeviceAndTable) {
 TEST(LightTest, WithoutASheetWhatIsProjectedIsRightAllTheSame) {
     const Installation believed = defaultInstallation();
     const Installation truth = trueRoom(believed, bundledTablet()->actuators(), 3);
-    LightLabOptions options;
-    options.laysSheet = false;
-    const LightCalibration found = measureLightInLab(*bundledTablet(), believed, truth, 3, {}, options);
+    LabBenchOptions options;
+    options.light.laysSheet = false;
+    const auto found = measuredInLab<LightCalibration>("light", *bundledTablet(), believed, truth, 3, options);
     const LightErrors errors = errorsOf(found.room, truth);
     printErrors("without a sheet", found, errors);
     ASSERT_TRUE(found.good()) << sentenceOf(*found.refusal);
@@ -176,10 +178,10 @@ TEST(LightTest, WithoutASheetWhatIsProjectedIsRightAllTheSame) {
 TEST(LightTest, ACameraOfOtherColoursTintsTheGainsAlone) {
     const Installation believed = defaultInstallation();
     const Installation truth = trueRoom(believed, bundledTablet()->actuators(), 4);
-    LightLabOptions options;
-    options.balance = {0.75, 1.0, 0.85};
-    options.ambient = 0.0;
-    const LightCalibration found = measureLightInLab(*bundledTablet(), believed, truth, 4, {}, options);
+    LabBenchOptions options;
+    options.light.balance = {0.75, 1.0, 0.85};
+    options.light.ambient = 0.0;
+    const auto found = measuredInLab<LightCalibration>("light", *bundledTablet(), believed, truth, 4, options);
     const LightErrors errors = errorsOf(found.room, truth);
     printErrors("another camera, dark", found, errors);
     ASSERT_TRUE(found.good()) << sentenceOf(*found.refusal);
@@ -200,10 +202,10 @@ class LightFaultTest : public testing::TestWithParam<LightFaultCase> {};
 TEST_P(LightFaultTest, IsNamedAndNothingIsKept) {
     const Installation believed = defaultInstallation();
     const Installation truth = trueRoom(believed, bundledTablet()->actuators(), 5);
-    LightLabOptions options;
-    options.fault = parseLightFault(GetParam().name);
-    EXPECT_EQ(options.fault, GetParam().fault);
-    const LightCalibration found = measureLightInLab(*bundledTablet(), believed, truth, 5, {}, options);
+    LabBenchOptions options;
+    options.light.fault = parseLightFault(GetParam().name);
+    EXPECT_EQ(options.light.fault, GetParam().fault);
+    const auto found = measuredInLab<LightCalibration>("light", *bundledTablet(), believed, truth, 5, options);
     ASSERT_TRUE(found.refusal);
     std::printf("%s\n", sentenceOf(*found.refusal).c_str());
     EXPECT_EQ(keyOf(found.refusal->cause), keyOf(GetParam().cause));
@@ -224,11 +226,11 @@ TEST(LightTest, OfWhatACameraDoesNotSeeIsRefused) {
     Installation room = defaultInstallation();
     room.cameras.push_back(
         {"Camera", "", cameraLookingAt({0.0, 1.0, 2.0}, {0.0, 0.8, 4.0}, {640, 512}, 900.0), {}, {}});
-    const LightCalibration found = measureLightInLab(*bundledTablet(), room, room, 1);
+    const auto found = measuredInLab<LightCalibration>("light", *bundledTablet(), room, room, 1);
     ASSERT_TRUE(found.refusal);
     EXPECT_EQ(found.refusal->cause, Cause::surfaceUnseen);
     room.projectors.front().enabled = false;
-    EXPECT_THROW((void)measureLightInLab(*bundledTablet(), room, room, 1), InvalidInput);
+    EXPECT_THROW((void)measuredInLab<LightCalibration>("light", *bundledTablet(), room, room, 1), InvalidInput);
     EXPECT_THROW((void)parseLightFault("tired"), InvalidInput);
 }
 
@@ -236,7 +238,8 @@ TEST(LightTest, EndsWhenItIsCancelled) {
     std::stop_source source;
     source.request_stop();
     const Installation believed = defaultInstallation();
-    EXPECT_THROW((void)measureLightInLab(*bundledTablet(), believed, believed, 1, Progress({}, source.get_token())),
+    EXPECT_THROW((void)measuredInLab<LightCalibration>("light", *bundledTablet(), believed, believed, 1, {},
+                                                       Progress({}, source.get_token())),
                  Cancelled);
 }
 
@@ -315,7 +318,7 @@ TEST(LightSeamTest, OfTwoProjectorsIsFlatWithinTwoPercentByWhatWasMeasured) {
     LabErrors errors;
     errors.gain = 0.2;
     const Installation truth = trueRoom(believed, bundledTablet()->actuators(), 6, errors);
-    const LightCalibration found = measureLightInLab(*bundledTablet(), believed, truth, 6);
+    const auto found = measuredInLab<LightCalibration>("light", *bundledTablet(), believed, truth, 6);
     printErrors("two projectors", found, errorsOf(found.room, truth));
     ASSERT_TRUE(found.good()) << sentenceOf(*found.refusal);
     const SeamFigures before = seamOf(believed, truth), after = seamOf(found.room, truth);

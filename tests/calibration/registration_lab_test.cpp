@@ -13,6 +13,7 @@
 #include "calibration/lab/board_lab.h"
 #include "calibration/registration/surface_fit.h"
 #include "core/scene/measured_sigma.h"
+#include "tests/calibration/measured_stage.h"
 #include "tests/support/cut_tablet.h"
 
 // R24, R25, R26: tracker, pointer, device and eye in millimetres, against the lab's truth.
@@ -46,6 +47,11 @@ struct Room {
     }
 };
 
+Registration registeredInLab(const char* stage, const Installation& believed, const Room& room, std::uint32_t seed,
+                             const Progress& progress = {}) {
+    return test::measuredInLab<Registration>(stage, tablet(), believed, room.truth, seed, {}, progress);
+}
+
 struct Off {
     double millimetres = 0.0, degrees = 0.0;
 };
@@ -77,13 +83,13 @@ TEST(RegistrationLab, SetUpsAreRegisteredToAMillimetreAndTheEyeToFive) {
     std::printf("set-up   tip mm   tracker mm deg (fresh)   device mm deg (fresh)   eye mm (fresh)\n");
     for (unsigned seed = 1; seed <= kSetUps; ++seed) {
         const Room room(seed);
-        const Registration pointer = measurePointerInLab(tablet(), room.believed, room.truth, seed);
+        const Registration pointer = registeredInLab("pointer", room.believed, room, seed);
         ASSERT_TRUE(pointer.good()) << pointer.summary;
-        const Registration tracker = measureTrackerInLab(tablet(), pointer.installation, room.truth, seed);
+        const Registration tracker = registeredInLab("tracker", pointer.installation, room, seed);
         ASSERT_TRUE(tracker.good()) << tracker.summary;
-        const Registration device = measureDeviceInLab(tablet(), tracker.installation, room.truth, seed);
+        const Registration device = registeredInLab("body", tracker.installation, room, seed);
         ASSERT_TRUE(device.good()) << device.summary;
-        const Registration eye = measureEyeInLab(tablet(), device.installation, room.truth, seed);
+        const Registration eye = registeredInLab("eye", device.installation, room, seed);
         ASSERT_TRUE(eye.good()) << eye.summary;
         const Off inRoom = trackerOff(eye.installation, room.truth), onBody = deviceOff(eye.installation, room.truth);
         const double tip = tipOff(eye.installation, room.truth), eyes = eyeOff(eye.installation, room.truth);
@@ -98,34 +104,6 @@ TEST(RegistrationLab, SetUpsAreRegisteredToAMillimetreAndTheEyeToFive) {
         EXPECT_EQ(eye.installation.origins.eyeOffset.way, Origin::Way::simulated);
         EXPECT_EQ(tracker.fresh.points.size(), 4U);
     }
-}
-
-TEST(RegistrationLab, AllTogetherIsNoWorseThanOneByOne) {
-    constexpr unsigned kTogether = 8;
-    double before = 0.0, after = 0.0, tipBefore = 0.0, tipAfter = 0.0, eyeBefore = 0.0, eyeAfter = 0.0;
-    for (unsigned seed = 1; seed <= kTogether; ++seed) {
-        const Room room(seed);
-        Installation single = measurePointerInLab(tablet(), room.believed, room.truth, seed).installation;
-        single = measureTrackerInLab(tablet(), single, room.truth, seed).installation;
-        single = measureDeviceInLab(tablet(), single, room.truth, seed).installation;
-        single = measureEyeInLab(tablet(), single, room.truth, seed).installation;
-        const Registration all = measureAllInLab(tablet(), room.believed, room.truth, seed);
-        ASSERT_TRUE(all.good()) << all.summary;
-        before += trackerOff(single, room.truth).millimetres / kTogether;
-        after += trackerOff(all.installation, room.truth).millimetres / kTogether;
-        tipBefore += tipOff(single, room.truth) / kTogether;
-        tipAfter += tipOff(all.installation, room.truth) / kTogether;
-        eyeBefore += eyeOff(single, room.truth) / kTogether;
-        eyeAfter += eyeOff(all.installation, room.truth) / kTogether;
-        EXPECT_LE(trackerOff(all.installation, room.truth).millimetres, 1.0);
-        EXPECT_LE(deviceOff(all.installation, room.truth).degrees, 0.2);
-        EXPECT_LE(eyeOff(all.installation, room.truth), 5.0);
-    }
-    std::printf("mean errors, one by one -> together: tip %.2f -> %.2f mm, tracker %.2f -> %.2f mm, eye %.2f -> %.2f "
-                "mm\n",
-                tipBefore, tipAfter, before, after, eyeBefore, eyeAfter);
-    EXPECT_LE(tipAfter, tipBefore + 0.05);
-    EXPECT_LE(after, before + 0.1);
 }
 
 /// Errors in units of the sigmas that were said of them.
@@ -253,23 +231,6 @@ TEST(RegistrationLab, DotsThatFallOnABoxNeedNoTable) {
     EXPECT_LT(off.millimetres, 2.0);
 }
 
-TEST(RegistrationLab, MarkersThatTheCameraSeesTellThePlace) {
-    const Room room(4);
-    TrackerLab lab(room.truth, 4);
-    std::vector<glm::dvec3> places;
-    for (int i = 0; i < 24; ++i)
-        places.emplace_back(0.3 * std::sin(1.7 * i), 0.15 + 0.14 * std::cos(2.9 * i), 0.22 * std::sin(2.3 * i + 0.4));
-    const std::vector<SeenMarker> seen = lab.seeMarkers(places, room.truth.cameras.front().camera);
-    ASSERT_GE(seen.size(), 14U);
-    const MarkerCapture capture{{seen.begin(), seen.end() - 4}, {seen.end() - 4, seen.end()}};
-    const Registration result = registerTracker(capture, room.believed);
-    ASSERT_TRUE(result.good()) << result.summary;
-    const Off off = trackerOff(result.installation, room.truth);
-    std::printf("markers: %.2f mm, %.3f degrees; %s\n", off.millimetres, off.degrees, result.summary.c_str());
-    EXPECT_LT(off.millimetres, 1.0);
-    EXPECT_LT(off.degrees, 0.2);
-}
-
 TEST(RegistrationLab, ATrackedBoardBeforeTheCameraTellsThePlace) {
     const Room room(5);
     TrackerLab lab(room.truth, 5);
@@ -285,7 +246,7 @@ TEST(RegistrationLab, ATrackedBoardBeforeTheCameraTellsThePlace) {
 
 TEST(RegistrationLab, StructuredLightOnTheDeviceTellsItsBody) {
     const Room room(6);
-    const SurfaceCapture capture = captureSurfaceInLab(tablet(), room.believed, room.truth, 6);
+    const SurfaceCapture capture = test::surfaceInLab(tablet(), room.believed, room.truth, 6);
     Installation known = room.knowing(true, true);
     // Somebody has put it down anyhow.
     known.worldFromDevice = glm::rotate(glm::translate(known.worldFromDevice, {0.012F, 0.004F, -0.015F}),
@@ -301,29 +262,11 @@ TEST(RegistrationLab, StructuredLightOnTheDeviceTellsItsBody) {
 
 TEST(RegistrationLab, TheDeviceAtRestIsAsItsMeasuredServosByTheirNames) {
     Room room(6);
-    room.truth.cameras.front().camera = withSize(room.truth.cameras.front().camera, {160, 128});
     const Actuator& last = tablet().actuators().back(); // alone in the list, as after a check
     room.believed.servos = {{last.name, {{0.0, 0.02, 0.06}, {1.0, 0.96, 1.0}}, 0.0}};
-    const SurfaceCapture capture = captureSurfaceInLab(tablet(), room.believed, room.truth, 6);
     std::vector<double> strokes(tablet().actuatorCount(), 0.0);
     strokes.back() = 0.06;
-    EXPECT_EQ(capture.model.positions, deformed(tablet(), strokes).positions);
-}
-
-TEST(RegistrationLab, ABoardOnTheDeviceTellsItsBody) {
-    const Room room(7);
-    TrackerLab lab(room.truth, 7);
-    const CalibrationBoard board = parseCalibrationBoard("chess:9x7:12");
-    const Pose deviceFromBoard{{0.01, 0.021, -0.01}, rotationOfTurn({1.5707963, 0.0, 0.3})};
-    GluedBoardCapture capture;
-    capture.board = lab.glueBoard(room.truth.cameras.front().camera, board, 0.001, deviceFromBoard);
-    capture.fresh = captureLandmarksInLab(tablet(), room.truth, 7).fresh;
-    const Registration result = registerDevice(capture, room.knowing(true, true));
-    ASSERT_TRUE(result.good()) << result.summary;
-    const Off off = deviceOff(result.installation, room.truth);
-    std::printf("glued board: %.2f mm, %.3f degrees; %s\n", off.millimetres, off.degrees, result.summary.c_str());
-    EXPECT_LT(off.millimetres, 1.0);
-    EXPECT_LT(off.degrees, 0.2);
+    EXPECT_EQ(shapeAtRest(tablet(), room.believed).positions, deformed(tablet(), strokes).positions);
 }
 
 TEST(RegistrationLab, ADotThatWasMissedIsNamedAndHardlyCounts) {
@@ -338,26 +281,13 @@ TEST(RegistrationLab, ADotThatWasMissedIsNamedAndHardlyCounts) {
     EXPECT_LT(trackerOff(result.installation, room.truth).millimetres, 1.0);
 }
 
-TEST(RegistrationLab, EyesOfSeveralVisitorsMakeAUsualOneWithItsSpread) {
-    std::vector<EyePlace> visitors(3);
-    visitors[0].eyeFromHead = {0.03, -0.05, -0.08};
-    visitors[1].eyeFromHead = {0.03, -0.05, -0.07};
-    visitors[2].eyeFromHead = {0.03, -0.05, -0.09};
-    const UsualEye usual = usualEye(visitors);
-    EXPECT_LT(glm::distance(usual.eyeFromHead, glm::dvec3(0.03, -0.05, -0.08)), 1e-12);
-    EXPECT_NEAR(usual.spread, 0.01 * std::sqrt(2.0 / 3.0), 1e-12);
-    EXPECT_EQ(usual.visitors, 3U);
-    EXPECT_THROW((void)usualEye({}), InvalidInput);
-}
-
 TEST(RegistrationLab, CancelStopsAndRepeatsAreEqual) {
     const Room room(9);
     std::stop_source stop;
     stop.request_stop();
-    EXPECT_THROW((void)measureTrackerInLab(tablet(), room.believed, room.truth, 9, Progress({}, stop.get_token())),
-                 Cancelled);
+    EXPECT_THROW((void)registeredInLab("tracker", room.believed, room, 9, Progress({}, stop.get_token())), Cancelled);
     const Installation known = room.knowing(true, false);
-    const auto once = [&] { return measureTrackerInLab(tablet(), known, room.truth, 9).installation.worldFromTracker; };
+    const auto once = [&] { return registeredInLab("tracker", known, room, 9).installation.worldFromTracker; };
     EXPECT_EQ(once(), once());
 }
 

@@ -10,6 +10,7 @@
 #include "calibration/lab/registration_lab.h"
 #include "calibration/registration/nearest_surface.h"
 #include "calibration/registration/surface_fit.h"
+#include "tests/calibration/measured_stage.h"
 #include "tests/support/cut_tablet.h"
 #include "tests/support/small_rigs.h"
 
@@ -17,6 +18,8 @@
 
 namespace lumorph {
 namespace {
+
+using test::measuredInLab;
 
 const Rig& device() {
     static const Rig rig = test::cutTablet();
@@ -254,17 +257,16 @@ TEST(RegistrationRefusals, EveryFaultOfATrackerIsNamedInEveryStep) {
         {TrackerFault::notANumber, "no number", Cause::notANumber, "record again"},
     };
     for (const auto& row : faults) {
-        RegistrationLabOptions options;
-        options.fault = row.fault;
-        const auto expect = [&](const char* step, const Registration& result) {
-            expectRefused(result, row.cause, row.remedy, room.known, std::string(step) + ": " + row.name);
-        };
-        expect("tracker", measureTrackerInLab(device(), room.known, room.truth, 6, {}, options));
-        expect("device", measureDeviceInLab(device(), room.known, room.truth, 6, {}, options));
-        expect("eye", measureEyeInLab(device(), room.known, room.truth, 6, {}, options));
-        // A pointer that swings alone looks the same in a mirror, and at any scale.
-        if (row.fault != TrackerFault::leftHanded && row.fault != TrackerFault::centimetres)
-            expect("pointer", measurePointerInLab(device(), room.known, room.truth, 6, {}, options));
+        LabBenchOptions options;
+        options.touches.fault = row.fault;
+        for (const char* stage : {"tracker", "body", "eye", "pointer"}) {
+            // A pointer that swings alone looks the same in a mirror, and at any scale.
+            if (stage == std::string_view("pointer") &&
+                (row.fault == TrackerFault::leftHanded || row.fault == TrackerFault::centimetres))
+                continue;
+            expectRefused(measuredInLab<Registration>(stage, device(), room.known, room.truth, 6, options), row.cause,
+                          row.remedy, room.known, std::string(stage) + ": " + row.name);
+        }
     }
 }
 
@@ -309,19 +311,15 @@ TEST(RegistrationRefusals, FaultsAreNamedWithACameraToo) {
         };
         TrackerLab lab(room.truth, 9, {}, {}, row.fault);
         expect("moved board", registerTracker(lab.moveBoard(camera, board, 0.001), seeing));
-        GluedBoardCapture glued;
-        glued.board = lab.glueBoard(camera, board, 0.001, {{0.0, 0.021, 0.0}, rotationOfTurn({1.5707963, 0.0, 0.0})});
-        glued.fresh = captureLandmarksInLab(device(), room.truth, 9, options).fresh;
-        expect("glued board", registerDevice(glued, seeing));
-        expect("surface", registerDevice(captureSurfaceInLab(device(), seeing, room.truth, 9, options), seeing));
+        expect("surface", registerDevice(test::surfaceInLab(device(), seeing, room.truth, 9, options), seeing));
     }
 }
 
 TEST(RegistrationRefusals, DoubledRowsAreLeftOutAndSaid) {
     const KnownRoom room(7);
-    RegistrationLabOptions options;
-    options.fault = TrackerFault::doubledRows;
-    const Registration result = measureTrackerInLab(device(), room.known, room.truth, 7, {}, options);
+    LabBenchOptions options;
+    options.touches.fault = TrackerFault::doubledRows;
+    const auto result = measuredInLab<Registration>("tracker", device(), room.known, room.truth, 7, options);
     ASSERT_TRUE(result.good()) << result.summary;
     ASSERT_FALSE(result.warnings.empty());
     EXPECT_EQ(result.warnings.front().cause, Cause::doubledRows);

@@ -16,15 +16,17 @@
 #include "calibration/lab/device_lab.h"
 #include "calibration/lab/true_room.h"
 #include "calibration/servos/servo_gain.h"
-#include "calibration/servos/servo_lab.h"
 #include "core/base/error.h"
 #include "core/base/resources.h"
 #include "core/scene/measured_servos.h"
+#include "tests/calibration/measured_stage.h"
 #include "tests/core/temporary_folder.h"
 #include "tests/support/cut_tablet.h"
 
 namespace lumorph {
 namespace {
+
+using test::measuredInLab;
 
 bool takesLong() { return std::getenv("LUMORPH_LONG_TESTS") != nullptr; }
 
@@ -65,7 +67,7 @@ TEST(ServoCalibrationTest, SixBentServosWithTwoDegreesOfBacklash) {
     for (int seed = 1; seed <= seeds; ++seed) {
         const Installation believed = defaultInstallation();
         const Installation truth = trueRoom(believed, servoTablet().actuators(), seed);
-        const ServoMeasurement result = measureServosInLab(servoTablet(), believed, truth, seed);
+        const auto result = measuredInLab<ServoMeasurement>("servos", servoTablet(), believed, truth, seed);
         ASSERT_EQ(result.measured.servos.size(), 6U);
         for (const Finding& finding : result.measured.findings) ADD_FAILURE() << sentenceOf(finding);
         ASSERT_TRUE(result.measured.usable);
@@ -92,9 +94,9 @@ class ServoFaultTest : public testing::TestWithParam<FaultCase> {};
 TEST_P(ServoFaultTest, IsNamedWithItsServoAndNobodyElse) {
     const Installation believed = defaultInstallation();
     const Installation truth = trueRoom(believed, servoTablet().actuators(), 3);
-    ServoLabOptions options;
-    options.fault = GetParam().fault;
-    const ServoMeasurement result = measureServosInLab(servoTablet(), believed, truth, 3, {}, options);
+    LabBenchOptions options;
+    options.servos.fault = GetParam().fault;
+    const auto result = measuredInLab<ServoMeasurement>("servos", servoTablet(), believed, truth, 3, options);
     std::vector<std::string> expected, named;
     for (const std::size_t i : faultyServos(GetParam().fault, 6)) expected.push_back(servoTablet().actuators()[i].name);
     for (const Finding& finding : result.measured.findings) {
@@ -122,7 +124,7 @@ INSTANTIATE_TEST_SUITE_P(Lab, ServoFaultTest,
 TEST(ServoCalibrationTest, MatchedIouOfTheRealDeviceRises) {
     const Installation believed = defaultInstallation();
     const Installation truth = trueRoom(believed, servoTablet().actuators(), 1);
-    const ServoMeasurement result = measureServosInLab(servoTablet(), believed, truth, 1);
+    const auto result = measuredInLab<ServoMeasurement>("servos", servoTablet(), believed, truth, 1);
     const auto library = readTargets({resourceFile("targets/bowl.glb"), resourceFile("targets/corners.glb"),
                                       resourceFile("targets/cove.glb"), resourceFile("targets/valley.glb")});
     LibraryFitOptions options;
@@ -147,7 +149,9 @@ TEST(ServoCalibrationTest, StopEndsItWithNothingKept) {
             if (++reports == 5) stop.request_stop();
         },
         stop.get_token());
-    EXPECT_THROW(static_cast<void>(measureServosInLab(servoTablet(), believed, truth, 1, progress)), Cancelled);
+    EXPECT_THROW(
+        static_cast<void>(measuredInLab<ServoMeasurement>("servos", servoTablet(), believed, truth, 1, {}, progress)),
+        Cancelled);
     EXPECT_LE(reports, 6);
     EXPECT_NE(first.find("hands off"), std::string::npos) << first;
 }
@@ -166,7 +170,8 @@ TEST(ServoCalibrationTest, RefusesWhatIsNoMeasurement) {
     EXPECT_THROW(static_cast<void>(planServos(servoTablet(), {{0, 1, 2, 3, 4, 5}}, {.steps = 1})), InvalidInput);
     Installation dark = defaultInstallation();
     dark.projectors.clear();
-    EXPECT_THROW(static_cast<void>(measureServosInLab(servoTablet(), dark, dark, 1)), InvalidInput);
+    EXPECT_THROW(static_cast<void>(measuredInLab<ServoMeasurement>("servos", servoTablet(), dark, dark, 1)),
+                 InvalidInput);
 }
 
 /// What camera and projector see of the device in each step of a plan.
@@ -297,8 +302,15 @@ TEST(ServoCalibrationTest, OneFlapOnABenchOfPhotographs) {
     ServoPlanOptions plan;
     plan.steps = takesLong() ? 16 : 5;
     plan.fresh = 3;
-    PlayBench bench(rig, truth);
-    const ServoMeasurement result = measureServosOnBench(rig, believed, 5, bench, {}, plan);
+    plan.pictures = picturesOfLook(believed);
+    const auto measuredOn = [&](PlayBench bench) {
+        const auto look = [&](const std::vector<double>& commanded, const Progress& progress) {
+            return surfacePoints(lookBy(bench, believed, commanded, progress), believed.cameras.front().camera,
+                                 believed.projectors.front().camera);
+        };
+        return measureServos(rig, believed, 5, look, {}, plan);
+    };
+    const ServoMeasurement result = measuredOn(PlayBench(rig, truth));
     for (const Finding& finding : result.measured.findings) ADD_FAILURE() << sentenceOf(finding);
     ASSERT_TRUE(result.measured.usable);
     double worst = 0.0; // at the levels
@@ -314,7 +326,7 @@ TEST(ServoCalibrationTest, OneFlapOnABenchOfPhotographs) {
     EXPECT_NEAR(result.measured.servos.front().backlashDegrees, LabErrors{}.backlashDegrees, 0.5);
     PlayBench unplugged(rig, truth);
     unplugged.isUnplugged = true;
-    EXPECT_THROW((void)measureServosOnBench(rig, believed, 5, unplugged, {}, plan), DeviceError);
+    EXPECT_THROW((void)measuredOn(std::move(unplugged)), DeviceError);
 }
 
 TEST(ServoPlanTest, PartsOfTheSameVerticesMoveOneAfterTheOther) {

@@ -13,8 +13,8 @@
 #include "calibration/lab/moved_room.h"
 #include "calibration/lab/true_room.h"
 #include "calibration/verify/check_picture.h"
-#include "calibration/verify/verify_lab.h"
 #include "core/base/error.h"
+#include "tests/calibration/measured_stage.h"
 #include "tests/support/cut_tablet.h"
 #include "tests/support/long_tests.h"
 
@@ -39,19 +39,21 @@ Installation verifiedRoom() {
     return withLabCamera(room);
 }
 
-VerifyLabOptions quickOptions() {
-    VerifyLabOptions options;
-    options.pattern = "phase:16x3+1x3";
-    options.cameraWidth = 480;
+/// The same by a camera of few pixels.
+Installation seenRoom() { return photographedRoom(verifiedRoom(), 480); }
+
+LabBenchOptions quickOptions() {
+    LabBenchOptions options;
+    options.checkPattern = "phase:16x3+1x3";
     return options;
 }
 
 VerifiedRoom checkOf(const std::string& moved, std::uint32_t seed = 1,
-                     const VerifyLabOptions& options = quickOptions()) {
-    const Installation room = verifiedRoom();
+                     const LabBenchOptions& options = quickOptions()) {
+    const Installation room = seenRoom();
     const Installation truth =
         moved.empty() ? room : pushed(room, verifiedRig(), parseLabPush(moved, verifiedRig()), seed);
-    return measureVerifyInLab(verifiedRig(), room, truth, seed, {}, options);
+    return measuredInLab<VerifiedRoom>("verify", verifiedRig(), room, truth, seed, options);
 }
 
 /// Root mean square of how far light lies beside for the true room when the show is drawn for another, by rays of this
@@ -125,14 +127,12 @@ TEST(VerifyInLab, SaysStillGoodWhereNothingMoved) {
     EXPECT_LT(found.check.device.median, 0.3e-3);
     EXPECT_LT(found.fresh.median, 0.3e-3);
     EXPECT_GT(found.check.map.size(), 500U);
-    EXPECT_EQ(found.installation, verifiedRoom()) << "nothing is corrected that is right";
+    EXPECT_EQ(found.installation, seenRoom()) << "nothing is corrected that is right";
 }
 
 TEST(VerifyInLab, SaysStillGoodAtHalfAMillimetre) {
     for (const char* moved : {"projector:0.5mm", "device:0.5mm"}) {
-        VerifyLabOptions options = quickOptions();
-        options.isJudged = false;
-        const VerifiedRoom found = checkOf(moved, 4, options);
+        const VerifiedRoom found = checkOf(moved, 4);
         std::printf("%s: %s\n", moved, found.check.sentence.c_str());
         EXPECT_EQ(found.check.verdict, RoomCheck::Verdict::good);
     }
@@ -140,10 +140,10 @@ TEST(VerifyInLab, SaysStillGoodAtHalfAMillimetre) {
 
 // All that trueRoom makes wrong is there as well: unmeasured servos with play, other colours of the light.
 TEST(VerifyInLab, FindsAProjectorAmongServosThatNobodyMeasured) {
-    const Installation room = verifiedRoom();
+    const Installation room = seenRoom();
     const Installation truth =
         pushed(trueRoom(room, verifiedRig().actuators(), 3), verifiedRig(), {"projector", 3e-3, 0.0}, 3);
-    const VerifiedRoom found = measureVerifyInLab(verifiedRig(), room, truth, 3, {}, quickOptions());
+    const auto found = measuredInLab<VerifiedRoom>("verify", verifiedRig(), room, truth, 3, quickOptions());
     const double after = trueLightError(truth, found.installation);
     std::printf("%s\n  true light error %.2f mm before, %.3f mm after\n", found.check.sentence.c_str(),
                 1e3 * trueLightError(truth, room), 1e3 * after);
@@ -155,19 +155,19 @@ TEST(VerifyInLab, FindsAProjectorAmongServosThatNobodyMeasured) {
 }
 
 TEST(VerifyInLab, NamesWhyThereIsNoVerdict) {
-    const auto obstacleOf = [](const VerifyLabOptions& options) {
+    const auto obstacleOf = [](const LabBenchOptions& options) {
         const VerifiedRoom found = checkOf("projector:3mm", 1, options);
         std::printf("%s\n", found.check.sentence.c_str());
         EXPECT_EQ(found.check.verdict, RoomCheck::Verdict::none);
-        EXPECT_EQ(found.installation, verifiedRoom());
+        EXPECT_EQ(found.installation, seenRoom());
         return found.check.obstacle ? std::string(keyOf(found.check.obstacle->obstacle)) : std::string();
     };
-    VerifyLabOptions dark = quickOptions(), bright = dark, blurred = dark, covered = dark;
-    dark.pictures.exposure = 0.01;
-    bright.pictures.exposure = 4.0;
-    blurred.pictures.shake = 9.0;
+    LabBenchOptions dark = quickOptions(), bright = dark, blurred = dark, covered = dark;
+    dark.check.exposure = 0.01;
+    bright.check.exposure = 4.0;
+    blurred.check.shake = 9.0;
     const glm::vec3 eye(positionOf(verifiedRoom().cameras.front().camera));
-    covered.pictures.hands = {visitorHand(glm::vec3(0.6F) * eye, eye)};
+    covered.check.hands = {visitorHand(glm::vec3(0.6F) * eye, eye)};
     EXPECT_EQ(obstacleOf(dark), "too_dark");
     EXPECT_EQ(obstacleOf(bright), "overexposed");
     EXPECT_EQ(obstacleOf(blurred), "blurred");

@@ -6,6 +6,7 @@
 #include "app/studio/calibration/table_bench.h"
 #include "calibration/lab/check_lab.h"
 #include "calibration/lab/moved_room.h"
+#include "calibration/verify/room_verification.h"
 #include "calibration/verify/verify_lab.h"
 #include "core/base/error.h"
 #include "tests/ui/devices_window.h"
