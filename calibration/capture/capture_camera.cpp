@@ -1,16 +1,12 @@
 #include "calibration/capture/capture_camera.h"
 
 #include <algorithm>
-#include <deque>
 #include <mutex>
-#include <system_error>
 
 #include <opencv2/core/utils/logger.hpp>
-#include <opencv2/imgproc.hpp>
 #include <opencv2/videoio.hpp>
 
 #include "calibration/capture/camera_controls.h"
-#include "calibration/decode/capture_folder.h"
 #include "calibration/lab/board_lab.h"
 #include "calibration/tracking/camera_source.h"
 #include "core/base/clock.h"
@@ -120,92 +116,6 @@ private:
     std::vector<std::string> automatics_;
 };
 
-class ImageFiles final : public CaptureCamera {
-public:
-    ImageFiles(std::vector<std::filesystem::path> files, std::string name)
-        : files_(std::move(files)), name_(std::move(name)) {}
-
-    [[nodiscard]] cv::Mat grab(const Progress& progress) override {
-        progress.throwIfCancelled();
-        if (next_ == files_.size())
-            throw DataError(name_, "holds only " + std::to_string(files_.size()) + " images",
-                            "give as many images as the order has patterns");
-        const std::filesystem::path& file = files_[next_++];
-        cv::Mat image = readGrey(file, file.parent_path().filename().string());
-        size_ = image.size();
-        return image;
-    }
-    [[nodiscard]] std::string name() const override { return name_; }
-    [[nodiscard]] cv::Size size() const override { return size_; }
-    [[nodiscard]] bool isLive() const override { return false; }
-
-private:
-    std::vector<std::filesystem::path> files_;
-    std::string name_;
-    std::size_t next_ = 0;
-    cv::Size size_;
-};
-
-class Film final : public CaptureCamera {
-public:
-    explicit Film(const std::filesystem::path& file) : name_(file.string()) {
-        silenceVideo();
-        const SourceFacts facts = lookAt(name_);
-        if (isCameraPath(name_) || !facts.permitted || !capture_.open(name_, cv::CAP_FFMPEG))
-            throw DataError(name_, "is no video that can be read", adviceFor(name_, facts));
-        const double width = capture_.get(cv::CAP_PROP_FRAME_WIDTH);
-        const double height = capture_.get(cv::CAP_PROP_FRAME_HEIGHT);
-        if (!(width >= 1.0 && height >= 1.0 && width <= 16384.0 && height <= 16384.0))
-            throw DataError(name_, "has frames of an absurd size", "convert it, for example to MP4");
-        size_ = {static_cast<int>(width), static_cast<int>(height)};
-    }
-
-    [[nodiscard]] cv::Mat grab(const Progress& progress) override {
-        for (;;) {
-            progress.throwIfCancelled();
-            cv::Mat frame;
-            const bool isRead = capture_.read(frame) && !frame.empty();
-            const bool changes = !isRead || stretch_.empty() || differs(frame, stretch_.back());
-            if (changes && stretch_.size() >= kLeastFrames) {
-                // The first and last frame may show some of the next pattern already.
-                cv::Mat middle = stretch_[stretch_.size() / 2];
-                stretch_.clear();
-                if (isRead) stretch_.push_back(frame.clone());
-                return middle;
-            }
-            if (!isRead)
-                throw DataError(name_, "comes to its end before the patterns do",
-                                "film all of them, and let each stand still for half a second");
-            if (changes) stretch_.clear();
-            stretch_.push_back(frame.clone());
-            if (stretch_.size() > kMostKept) stretch_.pop_front();
-        }
-    }
-    [[nodiscard]] std::string name() const override { return name_; }
-    [[nodiscard]] cv::Size size() const override { return size_; }
-    [[nodiscard]] bool isLive() const override { return false; }
-
-private:
-    static constexpr std::size_t kLeastFrames = 3;
-    static constexpr std::size_t kMostKept = 9;
-
-    /// More than compression and noise do to a still picture.
-    static bool differs(const cv::Mat& one, const cv::Mat& other) {
-        if (one.size() != other.size()) return true;
-        cv::Mat difference, coarse;
-        cv::absdiff(one, other, difference);
-        cv::resize(difference, coarse, {64, 48}, 0.0, 0.0, cv::INTER_AREA);
-        double most = 0.0;
-        cv::minMaxLoc(coarse.reshape(1), nullptr, &most);
-        return most > 12.0;
-    }
-
-    std::string name_;
-    cv::VideoCapture capture_;
-    cv::Size size_;
-    std::deque<cv::Mat> stretch_; ///< the newest frames of what stands still
-};
-
 class LabCamera final : public CaptureCamera {
 public:
     explicit LabCamera(BoardLab& lab) : lab_(lab) {}
@@ -226,17 +136,6 @@ private:
 std::unique_ptr<CaptureCamera> openCaptureCamera(const std::string& path, cv::Size most) {
     return std::make_unique<DriverCamera>(path, most);
 }
-
-std::unique_ptr<CaptureCamera> openImages(std::vector<std::filesystem::path> files) {
-    std::string name = files.empty() ? "list of images" : files.front().parent_path().string();
-    return std::make_unique<ImageFiles>(std::move(files), std::move(name));
-}
-
-std::unique_ptr<CaptureCamera> openImageFolder(const std::filesystem::path& folder) {
-    return std::make_unique<ImageFiles>(imagesIn(folder), folder.string());
-}
-
-std::unique_ptr<CaptureCamera> openVideo(const std::filesystem::path& file) { return std::make_unique<Film>(file); }
 
 std::unique_ptr<CaptureCamera> openLabCamera(BoardLab& lab) { return std::make_unique<LabCamera>(lab); }
 

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
@@ -46,15 +45,6 @@ public:
 /// itself). Exposure, white balance, focus and gain are fixed where they are, as far as the driver allows. Throws
 /// DeviceError with what to do.
 [[nodiscard]] std::unique_ptr<CaptureCamera> openCaptureCamera(const std::string& path, cv::Size most = {1920, 1080});
-
-/// PNG and JPEG files in this order.
-[[nodiscard]] std::unique_ptr<CaptureCamera> openImages(std::vector<std::filesystem::path> files);
-/// All of a folder, by name with numbers as numbers. Throws DataError where it has none.
-[[nodiscard]] std::unique_ptr<CaptureCamera> openImageFolder(const std::filesystem::path& folder);
-
-/// A film of patterns, each of which stood still for at least three frames: a grab gives a frame out of the middle of
-/// the next stretch in which nothing changes. Throws DataError for a file that is no video.
-[[nodiscard]] std::unique_ptr<CaptureCamera> openVideo(const std::filesystem::path& file);
 
 /// The virtual lab's; it outlives the camera.
 [[nodiscard]] std::unique_ptr<CaptureCamera> openLabCamera(BoardLab& lab);

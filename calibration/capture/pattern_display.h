@@ -1,6 +1,5 @@
 #pragma once
 
-#include <filesystem>
 #include <memory>
 
 #include <opencv2/core.hpp>
@@ -25,9 +24,6 @@ public:
     /// Gives the screen back to what was shown before.
     virtual void clear() = 0;
 };
-
-/// Writes each picture to `folder` as pattern_000.png and so on, for showing them outside of Lumorph.
-[[nodiscard]] std::unique_ptr<PatternDisplay> openFileDisplay(const std::filesystem::path& folder, cv::Size size);
 
 /// The virtual lab's projector; the lab outlives it.
 [[nodiscard]] std::unique_ptr<PatternDisplay> openLabDisplay(BoardLab& lab);

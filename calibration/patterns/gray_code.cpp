@@ -23,12 +23,4 @@ cv::Mat grayCodePattern(cv::Size size, PatternAxis axis, int bit, bool inverse) 
     return axis == PatternAxis::columns ? cv::repeat(line, size.height, 1) : cv::repeat(line.t(), 1, size.width);
 }
 
-std::vector<cv::Mat> grayCodePatterns(cv::Size size) {
-    std::vector<cv::Mat> patterns;
-    for (const PatternAxis axis : {PatternAxis::columns, PatternAxis::rows})
-        for (int bit = grayCodeBits(axis == PatternAxis::columns ? size.width : size.height) - 1; bit >= 0; --bit)
-            for (const bool inverse : {false, true}) patterns.push_back(grayCodePattern(size, axis, bit, inverse));
-    return patterns;
-}
-
 } // namespace lumorph

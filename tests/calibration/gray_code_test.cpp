@@ -2,10 +2,18 @@
 
 #include <gtest/gtest.h>
 
+#include "calibration/patterns/capture_order.h"
 #include "core/base/error.h"
 
 namespace lumorph {
 namespace {
+
+std::vector<cv::Mat> patternsOf(cv::Size size) {
+    std::vector<cv::Mat> patterns;
+    for (const PatternImage& image : parsePattern("graycode", size).images)
+        patterns.push_back(drawPattern(image, size));
+    return patterns;
+}
 
 // Decodes as a camera would: a bit is 1 where the pattern is brighter than its inverse.
 int decode(const std::vector<cv::Mat>& patterns, std::size_t first, int bits, int x, int y) {
@@ -20,8 +28,8 @@ int decode(const std::vector<cv::Mat>& patterns, std::size_t first, int bits, in
 
 TEST(GrayCode, EveryPixelDecodesToItsOwnIndices) {
     const cv::Size size(100, 37);
-    const auto patterns = grayCodePatterns(size);
-    ASSERT_EQ(patterns.size(), 2U * (7 + 6));
+    const auto patterns = patternsOf(size);
+    ASSERT_EQ(patterns.size(), 2U * (7 + 6) + 2U) << "and white and black";
     for (int y = 0; y < size.height; ++y)
         for (int x = 0; x < size.width; ++x) {
             ASSERT_EQ(decode(patterns, 0, 7, x, y), x);
@@ -30,7 +38,7 @@ TEST(GrayCode, EveryPixelDecodesToItsOwnIndices) {
 }
 
 TEST(GrayCode, NeighbouringColumnsDifferInOneBitOnly) {
-    const auto patterns = grayCodePatterns({1024, 1});
+    const auto patterns = patternsOf({1024, 1});
     for (int x = 1; x < 1024; ++x) {
         int different = 0;
         for (std::size_t i = 0; i < 20; i += 2)
@@ -39,7 +47,9 @@ TEST(GrayCode, NeighbouringColumnsDifferInOneBitOnly) {
     }
 }
 
-TEST(GrayCode, AnEmptyProjectorIsRefused) { EXPECT_THROW((void)grayCodePatterns({0, 768}), InvalidInput); }
+TEST(GrayCode, AnEmptyProjectorIsRefused) {
+    EXPECT_THROW((void)grayCodePattern({0, 768}, PatternAxis::columns, 0, false), InvalidInput);
+}
 
 } // namespace
 } // namespace lumorph
