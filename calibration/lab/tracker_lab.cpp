@@ -286,32 +286,4 @@ BoardCapture TrackerLab::moveBoard(const CalibratedCamera& camera, const Calibra
     return capture;
 }
 
-BoardOnDevice TrackerLab::glueBoard(const CalibratedCamera& camera, const CalibrationBoard& board, double metresPerUnit,
-                                    const Pose& deviceFromBoard, double seconds) {
-    const std::vector<cv::Point3d> points = metresOf(board, metresPerUnit);
-    const Pose worldFromBoard = rigidOf(truth_.worldFromDevice) * deviceFromBoard;
-    BoardOnDevice capture;
-    capture.deviceFromBoard = deviceFromBoard;
-    const double begin = now_;
-    capture.body = recordDevice(seconds);
-    for (double t = 0.05; t < seconds - 0.1; t += 1.0 / kCameraRate)
-        capture.board.poses.push_back({begin + t, seenBoard(camera, points, worldFromBoard)});
-    return capture;
-}
-
-std::vector<SeenMarker> TrackerLab::seeMarkers(std::span<const glm::dvec3> places, const CalibratedCamera& camera) {
-    const LabLens lens = lensOf(camera, "camera of the lab");
-    std::vector<SeenMarker> seen;
-    for (const glm::dvec3& place : places) {
-        const auto pixel = imageOf(lens, place);
-        if (!pixel || !inImage(lens, *pixel)) continue;
-        const PoseTrack rests = record([&](double) { return Pose{place, {1.0, 0.0, 0.0, 0.0}}; }, 0.5);
-        glm::dvec3 mean(0.0);
-        for (const TimedPose& at : rests.poses) mean += at.pose.position / double(rests.poses.size());
-        const glm::dvec3 noise = dice(kCornerNoise);
-        seen.push_back({"marker " + std::to_string(seen.size() + 1), 0, *pixel + glm::dvec2(noise), mean});
-    }
-    return seen;
-}
-
 } // namespace lumorph

@@ -71,14 +71,6 @@ public:
     [[nodiscard]] BoardCapture moveBoard(const CalibratedCamera& camera, const CalibrationBoard& board,
                                          double metresPerUnit, const glm::dvec3& turns = glm::dvec3(0.5),
                                          double seconds = 40.0, double clockOffset = 3.2);
-    /// A board on the device, which rests.
-    [[nodiscard]] BoardOnDevice glueBoard(const CalibratedCamera& camera, const CalibrationBoard& board,
-                                          double metresPerUnit, const Pose& deviceFromBoard, double seconds = 5.0);
-    /// Single markers at places of the room, as tracker and camera see them.
-    [[nodiscard]] std::vector<SeenMarker> seeMarkers(std::span<const glm::dvec3> places,
-                                                     const CalibratedCamera& camera);
-
-    [[nodiscard]] const Installation& truth() const noexcept { return truth_; }
 
 private:
     [[nodiscard]] Touch hold(const std::string& name, const glm::dvec3& place, bool onDevice);

@@ -20,39 +20,16 @@ struct TouchedLandmark {
     Touch touch;
 };
 
-struct DevicePlace {
-    registration::Figures figures; ///< `bodyFromDevice`, and the tip as it fits best
-    double rms = 0.0;              ///< metres
-    std::vector<PointError> points;
-    double turnSigma = 0.0, shiftSigma = 0.0; ///< radians; metres, in the middle of the points
-    double tipSigma = 0.0;                    ///< metres: what of `shiftSigma` the pointer's tip makes
-    std::vector<Finding> warnings;
-};
-
 /// The rows of touches. Throws CaptureRefused as restOf does, and `tracker_lost` for a touch without the device's body.
-struct LandmarkRows {
-    std::vector<registration::ModelRow> rows;
+struct LandmarkRows : registration::NamedRows<registration::ModelRow> {
     std::vector<std::optional<glm::dvec3>> outward; ///< one a row
-    std::vector<std::string> names;
-    std::vector<Finding> warnings;
 };
 [[nodiscard]] LandmarkRows rowsOf(std::span<const TouchedLandmark> touches, const glm::dvec3& tip,
                                   const CaptureFault* undo = nullptr);
 
 /// Rigid fit, then together with the tip. Throws CaptureRefused: `too_few_points`, `points_degenerate`, `mirrored`,
 /// `model_does_not_fit`.
-[[nodiscard]] DevicePlace placeDevice(const LandmarkRows& touches, const registration::TipRow& tip,
-                                      const Progress& progress = {});
-
-/// A marker board glued to the device at a known place, seen by a calibrated camera while the device's body is
-/// tracked, both by one clock.
-struct BoardOnDevice {
-    PoseTrack body;       ///< in the tracker's world
-    PoseTrack board;      ///< in the room's
-    Pose deviceFromBoard; ///< where it was glued
-};
-/// The mean of what single moments say; the sigmas are of that mean. Throws CaptureRefused as soundTrack does,
-/// `too_few_points` for fewer than 20 shared moments, and `model_does_not_fit` where moments contradict one another.
-[[nodiscard]] DevicePlace placeDeviceByBoard(const BoardOnDevice& capture, const Pose& worldFromTracker);
+[[nodiscard]] registration::FittedPlace placeDevice(const LandmarkRows& touches, const registration::TipRow& tip,
+                                                    const Progress& progress = {});
 
 } // namespace lumorph

@@ -194,17 +194,4 @@ EyePlace placeEye(const SightRows& alignments, const Pose& worldFromTracker, con
     return place;
 }
 
-UsualEye usualEye(std::span<const EyePlace> visitors) {
-    if (visitors.empty()) throw InvalidInput("usual eye", "no visitor was measured", "measure two or more");
-    UsualEye usual;
-    usual.visitors = visitors.size();
-    for (const EyePlace& one : visitors) usual.eyeFromHead += one.eyeFromHead / double(visitors.size());
-    for (const EyePlace& one : visitors) {
-        const glm::dvec3 from = one.eyeFromHead - usual.eyeFromHead;
-        usual.spread += glm::dot(from, from) / double(visitors.size());
-    }
-    usual.spread = std::sqrt(usual.spread);
-    return usual;
-}
-
 } // namespace lumorph

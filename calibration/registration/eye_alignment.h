@@ -28,11 +28,7 @@ struct EyePlace {
 };
 
 /// The rows of alignments. Throws CaptureRefused as restOf does, and `tracker_lost` for one without a head.
-struct SightRows {
-    std::vector<registration::SightRow> rows;
-    std::vector<std::string> names;
-    std::vector<Finding> warnings;
-};
+using SightRows = registration::NamedRows<registration::SightRow>;
 [[nodiscard]] SightRows rowsOf(std::span<const Alignment> alignments, const glm::dvec3& tip,
                                const CaptureFault* undo = nullptr);
 
@@ -53,14 +49,5 @@ struct SightBase {
 /// where the head saw all marks in one direction, so that how far away the eye is stays open, `model_does_not_fit`.
 [[nodiscard]] EyePlace placeEye(const SightRows& alignments, const Pose& worldFromTracker, const SightBase& base,
                                 const Progress& progress = {});
-
-/// One offset for all who wear a rig: the mean of several visitors' eyes, and how far single ones are from it.
-struct UsualEye {
-    glm::dvec3 eyeFromHead{0.0};
-    double spread = 0.0; ///< metres, RMS
-    std::size_t visitors = 0;
-};
-/// Throws InvalidInput for none.
-[[nodiscard]] UsualEye usualEye(std::span<const EyePlace> visitors);
 
 } // namespace lumorph

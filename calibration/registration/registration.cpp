@@ -20,6 +20,7 @@ namespace lumorph {
 namespace {
 
 using registration::Figures;
+using registration::FittedPlace;
 using registration::kDegree;
 using registration::number;
 using registration::TipRow;
@@ -89,6 +90,17 @@ template <typename Work> Registration orRefusal(const Installation& believed, co
     return result;
 }
 
+/// The same, where a fault that all poses share is named in place of what it leads to; `work` undoes the one given.
+template <typename Work> Registration orNamedFault(const char* what, const Installation& believed, const Work& work) {
+    return orRefusal(believed, [&](Registration& result) {
+        result = orNamed(what, [&](const CaptureFault* undo) {
+            Registration one = result;
+            work(undo, one);
+            return one;
+        });
+    });
+}
+
 std::string worthOf(const Registration& result) {
     return std::to_string(result.fresh.points.size()) + " check points that the fit never saw lie " +
            mm(result.fresh.rms) + " off (RMS), the worst " + mm(result.fresh.worst);
@@ -101,7 +113,7 @@ Origin measured(std::string method, const Registration& result) {
     return measured(std::move(method), {result.shiftSigma, result.turnSigma, 0.0, result.tipSigma});
 }
 
-template <typename Place> void take(Registration& result, Place&& place) {
+void take(Registration& result, FittedPlace place) {
     result.rms = place.rms;
     result.points = std::move(place.points);
     result.turnSigma = place.turnSigma;
@@ -162,22 +174,13 @@ void keepTracker(Registration& result, const Pose& worldFromTracker, std::string
 void solveDots(const DotCapture& capture, const CaptureFault* undo, const Progress& progress, Registration& result) {
     const Installation& room = result.installation;
     const glm::dvec3 tip = withoutFault(glm::dvec3(room.pointerTip), undo);
-    TrackerPlace place =
+    FittedPlace place =
         placeTracker(rowsOf(capture.dots, room, tip, capture.tableHeight, undo), tipOf(room, tip), progress);
     const Figures figures = place.figures;
     take(result, std::move(place));
     result.fresh =
         checkFresh(errorsOf(rowsOf(capture.fresh, room, tip, capture.tableHeight, undo), figures), kFreshTracker);
     keepTracker(result, figures.worldFromTracker, "touched dots, " + std::to_string(capture.dots.size()));
-}
-
-void solveMarkers(const MarkerCapture& capture, const CaptureFault* undo, const Progress& progress,
-                  Registration& result) {
-    TrackerPlace place = placeTracker(rowsOf(capture.markers, result.installation, undo), TipRow{}, progress);
-    const Figures figures = place.figures;
-    take(result, std::move(place));
-    result.fresh = checkFresh(errorsOf(rowsOf(capture.fresh, result.installation, undo), figures), kFreshTracker);
-    keepTracker(result, figures.worldFromTracker, "seen markers, " + std::to_string(capture.markers.size()));
 }
 
 /// Moments of the board that the fit never saw: how far the tracker has it from where the camera does.
@@ -224,7 +227,7 @@ void keepDevice(Registration& result, const Pose& bodyFromDevice, std::string me
                      number(result.turnSigma / kDegree, 2) + " degrees; " + worthOf(result) + ".";
 }
 
-void judgeDevice(DevicePlace place, const std::vector<TouchedLandmark>& fresh, const CaptureFault* undo,
+void judgeDevice(FittedPlace place, const std::vector<TouchedLandmark>& fresh, const CaptureFault* undo,
                  std::string method, Registration& result) {
     const glm::dvec3 tip = withoutFault(glm::dvec3(result.installation.pointerTip), undo);
     Figures figures = place.figures;
@@ -267,7 +270,7 @@ void solveRecorded(const RecordedLandmarks& capture, const Progress& progress, R
         rows.outward.emplace_back();
         rows.names.push_back(point.name);
     }
-    DevicePlace place = placeDevice(fitted, tipOf(result.installation, tip), progress);
+    FittedPlace place = placeDevice(fitted, tipOf(result.installation, tip), progress);
     Figures figures = place.figures;
     figures.tip = tip;
     take(result, std::move(place));
@@ -317,55 +320,6 @@ void solveEye(const EyeCapture& capture, const CaptureFault* undo, const Progres
     result.summary = "The eye is known to " + mm(result.shiftSigma) + "; " + worthOf(result) + ".";
 }
 
-// All of it.
-
-/// What no single fit saw, against all figures at once: each kind by what it allows, then all as one.
-FreshCheck jointCheck(const JointCapture& capture, const Installation& room, const Figures& figures) {
-    const glm::dvec3& tip = figures.tip;
-    std::vector<PointError> all;
-    const auto add = [&](const std::vector<PointError>& errors, double allowed) {
-        (void)checkFresh(errors, allowed);
-        all.insert(all.end(), errors.begin(), errors.end());
-    };
-    add(errorsOf(rowsOf(capture.dots.fresh, room, tip, capture.dots.tableHeight), figures), kFreshTracker);
-    add(errorsOf(rowsOf(capture.landmarks.fresh, tip), figures), kFreshDevice);
-    add(errorsOf(rowsOf(capture.eye.fresh, tip), figures), kFreshEye);
-    return checkFresh(std::move(all), kFreshEye);
-}
-
-void solveJointly(const JointCapture& capture, const Progress& progress, Registration& result) {
-    const Installation& room = result.installation;
-    const Figures start = figuresIn(room);
-    const DotRows dots = rowsOf(capture.dots.dots, room, start.tip, capture.dots.tableHeight);
-    const LandmarkRows landmarks = rowsOf(capture.landmarks.touches, start.tip);
-    const SightRows sights = rowsOf(capture.eye.alignments, start.tip);
-    const registration::Rows rows{dots.rows, landmarks.rows, sights.rows, TipRow{capture.pivotTip, capture.pivotSigma}};
-    const registration::Refined refined = registration::refine(rows, start, {true, true, true, true}, progress);
-    result.turnSigma = refined.sigmas.trackerTurn;
-    result.shiftSigma = refined.sigmas.trackerShift;
-    result.tipSigma = refined.sigmas.trackerTip;
-    for (const auto& errors :
-         {errorsOf(dots, refined.figures), errorsOf(landmarks, refined.figures), errorsOf(sights, refined.figures)})
-        result.points.insert(result.points.end(), errors.begin(), errors.end());
-    result.rms = rmsOf(result.points);
-    result.fresh = jointCheck(capture, room, refined.figures);
-    for (const auto* warnings : {&dots.warnings, &landmarks.warnings, &sights.warnings})
-        result.warnings.insert(result.warnings.end(), warnings->begin(), warnings->end());
-    result.installation.worldFromTracker = matrix(refined.figures.worldFromTracker);
-    result.installation.pointerTip = glm::vec3(refined.figures.tip);
-    result.installation.bodyFromDevice = matrix(refined.figures.bodyFromDevice);
-    result.installation.eyeFromHead = glm::vec3(refined.figures.eyeFromHead);
-    const char* const method = "all that was touched and aimed at, together";
-    const registration::Sigmas& sigmas = refined.sigmas;
-    Installation::Origins& origins = result.installation.origins;
-    // The pointer first: by their dates the others are known to share its tip.
-    origins.pointer = measured(method, {glm::length(sigmas.tip), 0.0, 0.0, 0.0});
-    origins.tracker = measured(method, {sigmas.trackerShift, sigmas.trackerTurn, 0.0, sigmas.trackerTip});
-    origins.deviceBody = measured(method, {sigmas.deviceShift, sigmas.deviceTurn, 0.0, sigmas.deviceTip});
-    origins.eyeOffset = measured(method, {glm::length(sigmas.eye), 0.0, 0.0, sigmas.eyeTip});
-    result.summary = "All together: " + worthOf(result) + ".";
-}
-
 } // namespace
 
 Registration registerPointer(const PointerCapture& capture, const Installation& believed, const Progress& progress) {
@@ -375,45 +329,22 @@ Registration registerPointer(const PointerCapture& capture, const Installation& 
 
 Registration registerTracker(const DotCapture& capture, const Installation& believed, const Progress& progress) {
     progress.report(0.0, "the tracker in the room");
-    return orRefusal(believed, [&](Registration& result) {
-        result = orNamed("touched dots", [&](const CaptureFault* undo) {
-            Registration one = result;
-            solveDots(capture, undo, progress, one);
-            return one;
-        });
-    });
-}
-
-Registration registerTracker(const MarkerCapture& capture, const Installation& believed, const Progress& progress) {
-    progress.report(0.0, "the tracker in the room");
-    return orRefusal(believed, [&](Registration& result) {
-        result = orNamed("seen markers", [&](const CaptureFault* undo) {
-            Registration one = result;
-            solveMarkers(capture, undo, progress, one);
-            return one;
-        });
+    return orNamedFault("touched dots", believed, [&](const CaptureFault* undo, Registration& result) {
+        solveDots(capture, undo, progress, result);
     });
 }
 
 Registration registerTracker(const BoardCapture& capture, const Installation& believed, const Progress& progress) {
     progress.report(0.0, "the tracker in the room");
-    return orRefusal(believed, [&](Registration& result) {
-        result = orNamed("tracked board", [&](const CaptureFault* undo) {
-            Registration one = result;
-            solveBoard(capture, undo, progress, one);
-            return one;
-        });
+    return orNamedFault("tracked board", believed, [&](const CaptureFault* undo, Registration& result) {
+        solveBoard(capture, undo, progress, result);
     });
 }
 
 Registration registerDevice(const LandmarkCapture& capture, const Installation& believed, const Progress& progress) {
     progress.report(0.0, "the device on its body");
-    return orRefusal(believed, [&](Registration& result) {
-        result = orNamed("touched points of the device", [&](const CaptureFault* undo) {
-            Registration one = result;
-            solveLandmarks(capture, undo, progress, one);
-            return one;
-        });
+    return orNamedFault("touched points of the device", believed, [&](const CaptureFault* undo, Registration& result) {
+        solveLandmarks(capture, undo, progress, result);
     });
 }
 
@@ -423,43 +354,16 @@ Registration registerDevice(const RecordedLandmarks& capture, const Installation
 }
 
 Registration registerDevice(const SurfaceCapture& capture, const Installation& believed, const Progress& progress) {
-    return orRefusal(believed, [&](Registration& result) {
-        result = orNamed("the device's surface", [&](const CaptureFault* undo) {
-            Registration one = result;
-            solveSurface(capture, undo, progress, one);
-            return one;
-        });
-    });
-}
-
-Registration registerDevice(const GluedBoardCapture& capture, const Installation& believed, const Progress& progress) {
-    progress.report(0.0, "the device on its body");
-    return orRefusal(believed, [&](Registration& result) {
-        result = orNamed("board on the device", [&](const CaptureFault* undo) {
-            Registration one = result;
-            BoardOnDevice board = capture.board;
-            if (undo) board.body = withoutFault(board.body, *undo);
-            judgeDevice(placeDeviceByBoard(board, figuresIn(result.installation).worldFromTracker), capture.fresh, undo,
-                        "board on the device", one);
-            return one;
-        });
+    return orNamedFault("the device's surface", believed, [&](const CaptureFault* undo, Registration& result) {
+        solveSurface(capture, undo, progress, result);
     });
 }
 
 Registration registerEye(const EyeCapture& capture, const Installation& believed, const Progress& progress) {
     progress.report(0.0, "the eye in its head");
-    return orRefusal(believed, [&](Registration& result) {
-        result = orNamed("alignments of the eye", [&](const CaptureFault* undo) {
-            Registration one = result;
-            solveEye(capture, undo, progress, one);
-            return one;
-        });
+    return orNamedFault("alignments of the eye", believed, [&](const CaptureFault* undo, Registration& result) {
+        solveEye(capture, undo, progress, result);
     });
-}
-
-Registration registerJointly(const JointCapture& capture, const Installation& believed, const Progress& progress) {
-    progress.report(0.0, "all together");
-    return orRefusal(believed, [&](Registration& result) { solveJointly(capture, progress, result); });
 }
 
 } // namespace lumorph

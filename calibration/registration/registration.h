@@ -51,13 +51,6 @@ struct DotCapture {
 [[nodiscard]] Registration registerTracker(const DotCapture& capture, const Installation& believed,
                                            const Progress& progress = {});
 
-/// Single markers of the tracker that calibrated cameras see as points.
-struct MarkerCapture {
-    std::vector<SeenMarker> markers, fresh;
-};
-[[nodiscard]] Registration registerTracker(const MarkerCapture& capture, const Installation& believed,
-                                           const Progress& progress = {});
-
 /// A marker board that is tracked and moved before a calibrated camera, each by its own clock. Of its last fifth
 /// the fit sees nothing: what the camera sees then is the fresh points.
 struct BoardCapture {
@@ -97,30 +90,11 @@ struct SurfaceCapture {
 [[nodiscard]] Registration registerDevice(const SurfaceCapture& capture, const Installation& believed,
                                           const Progress& progress = {});
 
-/// A marker board glued to the device; and landmarks as fresh points.
-struct GluedBoardCapture {
-    BoardOnDevice board;
-    std::vector<TouchedLandmark> fresh;
-};
-[[nodiscard]] Registration registerDevice(const GluedBoardCapture& capture, const Installation& believed,
-                                          const Progress& progress = {});
-
 /// Marks that the pointer's tip covers for the visitor's eye.
 struct EyeCapture {
     std::vector<Alignment> alignments, fresh;
 };
 [[nodiscard]] Registration registerEye(const EyeCapture& capture, const Installation& believed,
                                        const Progress& progress = {});
-
-/// All that was recorded solved together, from the installation that the single steps made: what one of them tells of
-/// the tip or the tracker helps the others. Fresh points are those of all of them.
-struct JointCapture {
-    DotCapture dots;
-    LandmarkCapture landmarks;
-    EyeCapture eye;
-    glm::dvec3 pivotTip{0.0}, pivotSigma{0.0002}; ///< of the swings, metres
-};
-[[nodiscard]] Registration registerJointly(const JointCapture& capture, const Installation& believed,
-                                           const Progress& progress = {});
 
 } // namespace lumorph

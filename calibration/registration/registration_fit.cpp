@@ -64,19 +64,18 @@ struct Near {
 struct RayError {
     Near world;
     Fixed pointer;
-    double reach; ///< 1: the tip; 0: the pointer's origin
     Eigen::Vector3d origin, across, along;
     double height, heightWeight, weight;
 
     RayError(const RayRow& row, const Near& near)
-        : world(near), pointer(row.pointer), reach(row.tip ? 1.0 : 0.0), origin(eigen(row.origin)),
-          height(row.height.value_or(0.0)), heightWeight(row.height ? 1.0 / row.sigma : 0.0), weight(1.0 / row.sigma) {
+        : world(near), pointer(row.pointer), origin(eigen(row.origin)), height(row.height.value_or(0.0)),
+          heightWeight(row.height ? 1.0 / row.sigma : 0.0), weight(1.0 / row.sigma) {
         const Eigen::Vector3d direction = eigen(row.direction).normalized();
         across = direction.unitOrthogonal();
         along = direction.cross(across);
     }
     template <typename T> bool operator()(const T* step, const T* tip, T* error) const {
-        const Vector3<T> point = world.of<T>(step, pointer * Vector3<T>(Eigen::Map<const Vector3<T>>(tip) * T(reach)));
+        const Vector3<T> point = world.of<T>(step, pointer * Vector3<T>(Eigen::Map<const Vector3<T>>(tip)));
         const Vector3<T> from = point - origin.cast<T>();
         error[0] = across.cast<T>().dot(from) * weight;
         error[1] = along.cast<T>().dot(from) * weight;
@@ -131,7 +130,7 @@ struct TipError {
 
 glm::dvec3 middleOfRays(const Rows& rows, const Figures& start) {
     glm::dvec3 sum(0.0);
-    for (const RayRow& row : rows.rays) sum += row.pointer * (row.tip ? start.tip : glm::dvec3(0.0));
+    for (const RayRow& row : rows.rays) sum += row.pointer * start.tip;
     return rows.rays.empty() ? inverseOf(start.worldFromTracker).position : sum / double(rows.rays.size());
 }
 
@@ -276,7 +275,7 @@ Refined refine(const Rows& rows, const Figures& start, const Free& free, const P
 }
 
 double missOf(const RayRow& row, const Figures& figures) {
-    const glm::dvec3 point = figures.worldFromTracker * (row.pointer * (row.tip ? figures.tip : glm::dvec3(0.0)));
+    const glm::dvec3 point = figures.worldFromTracker * (row.pointer * figures.tip);
     const glm::dvec3 from = point - row.origin, direction = glm::normalize(row.direction);
     const double aside = glm::length(from - glm::dot(from, direction) * direction);
     return row.height ? std::hypot(aside, point.y - *row.height) : aside;

@@ -1,13 +1,16 @@
 #pragma once
 
+#include <cmath>
 #include <optional>
+#include <string>
 #include <vector>
 
-#include "calibration/registration/pose_track.h"
+#include "calibration/registration/fresh_points.h"
+#include "calibration/registration/refusing.h"
 #include "core/base/progress.h"
 
-/// The joint, robust refinement of all that trackers are registered by. Every kind of measurement is a row, every
-/// figure is free or kept; so one solver serves the tracker alone as well as all of it together.
+/// The robust refinement of all that trackers are registered by. Every kind of measurement is a row, every figure is
+/// free or kept; so one solver serves tracker, device and eye.
 namespace lumorph::registration {
 
 struct Figures {
@@ -22,10 +25,9 @@ struct Free {
     bool tracker = false, tip = false, device = false, eye = false;
 };
 
-/// A point that the tracker knows, on a ray of the room and, where `height` is known, so high in it.
+/// The pointer's tip on a ray of the room and, where `height` is known, so high in it.
 struct RayRow {
-    Pose pointer;    ///< in the tracker's world
-    bool tip = true; ///< its tip is the point; else its origin is, as of a single marker
+    Pose pointer; ///< in the tracker's world
     glm::dvec3 origin{0.0}, direction{0.0, -1.0, 0.0};
     std::optional<double> height; ///< metres
     double sigma = 0.001;         ///< metres
@@ -53,6 +55,13 @@ struct TipRow {
     glm::dvec3 sigma{0.0005}; ///< metres
 };
 
+/// Rows of one kind, as touches make them.
+template <typename Row> struct NamedRows {
+    std::vector<Row> rows;
+    std::vector<std::string> names; ///< one a row
+    std::vector<Finding> warnings;
+};
+
 struct Rows {
     std::vector<RayRow> rays;
     std::vector<ModelRow> models;
@@ -68,6 +77,16 @@ struct Sigmas {
     double trackerTip = 0.0, deviceTip = 0.0, eyeTip = 0.0;
 };
 
+/// Where the tracker's world lies in the room's, or the device on its body.
+struct FittedPlace {
+    Figures figures;                          ///< this one, and the tip as it fits best
+    double rms = 0.0;                         ///< metres by which the points miss
+    std::vector<PointError> points;           ///< one a row
+    double turnSigma = 0.0, shiftSigma = 0.0; ///< radians; metres, in the middle of the points
+    double tipSigma = 0.0;                    ///< metres: what of `shiftSigma` the pointer's tip makes
+    std::vector<Finding> warnings;
+};
+
 struct Refined {
     Figures figures;
     Sigmas sigmas;
@@ -81,5 +100,34 @@ struct Refined {
 [[nodiscard]] double missOf(const RayRow& row, const Figures& figures);
 [[nodiscard]] double missOf(const ModelRow& row, const Figures& figures);
 [[nodiscard]] double missOf(const SightRow& row, const Figures& figures);
+
+/// Adds the miss of each row to a place that was fitted to them. One that misses by `astray` metres or more is named in
+/// a warning; throws CaptureRefused, `model_does_not_fit` about `what`, where more than a quarter does.
+template <typename Row>
+void judgePoints(FittedPlace& place, const NamedRows<Row>& fitted, double astray, const char* what,
+                 const char* remedy) {
+    std::size_t count = 0;
+    double squares = 0.0;
+    for (std::size_t i = 0; i < fitted.rows.size(); ++i) {
+        const double miss = missOf(fitted.rows[i], place.figures);
+        place.points.push_back({fitted.names[i], miss});
+        if (miss < astray) {
+            squares += miss * miss;
+            continue;
+        }
+        ++count;
+        place.warnings.push_back({Cause::pointSuspicious,
+                                  fitted.names[i],
+                                  {},
+                                  "it lies " + number(1000.0 * miss, 1) + " mm from where the others have it",
+                                  "it counts for little; touch it again"});
+    }
+    if (4 * count > fitted.rows.size())
+        refuse(Cause::modelDoesNotFit, what,
+               std::to_string(count) + " of " + std::to_string(fitted.rows.size()) +
+                   " points contradict the others, by " + number(1000.0 * rmsOf(place.points), 0) + " mm RMS of all",
+               remedy);
+    place.rms = std::sqrt(squares / double(fitted.rows.size() - count));
+}
 
 } // namespace lumorph::registration

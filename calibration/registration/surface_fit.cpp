@@ -160,10 +160,11 @@ SurfaceFit fitSurface(const TriangleMesh& model, std::span<const glm::dvec3> poi
     return fit;
 }
 
-DevicePlace placeDeviceBySurface(const SurfaceFit& fit, const PoseTrack& body, const Pose& worldFromTracker) {
+registration::FittedPlace placeDeviceBySurface(const SurfaceFit& fit, const PoseTrack& body,
+                                               const Pose& worldFromTracker) {
     std::vector<Pose> poses;
     for (const TimedPose& at : soundTrack(body, "body of the device").poses) poses.push_back(at.pose);
-    DevicePlace place;
+    registration::FittedPlace place;
     place.figures.bodyFromDevice = inverseOf(worldFromTracker * meanPose(poses)) * fit.worldFromModel;
     place.rms = fit.rms;
     place.turnSigma = fit.turnSigma;

@@ -28,7 +28,7 @@ struct SurfaceFit {
                                     const glm::dvec3& seenFrom, const Pose& start, const Progress& progress = {});
 
 /// The device on its body by such a fit, the body being tracked (in the tracker's world) while it was made.
-[[nodiscard]] DevicePlace placeDeviceBySurface(const SurfaceFit& fit, const PoseTrack& body,
-                                               const Pose& worldFromTracker);
+[[nodiscard]] registration::FittedPlace placeDeviceBySurface(const SurfaceFit& fit, const PoseTrack& body,
+                                                             const Pose& worldFromTracker);
 
 } // namespace lumorph

@@ -15,13 +15,13 @@ namespace lumorph {
 namespace {
 
 using registration::Figures;
+using registration::FittedPlace;
 using registration::number;
 using registration::RayRow;
 
 constexpr const char* kDots = "points between tracker and room";
 
-constexpr double kDotSigma = 0.0007;   ///< metres: how well a visitor meets a dot
-constexpr double kMarkerSigma = 0.001; ///< metres
+constexpr double kDotSigma = 0.0007; ///< metres: how well a visitor meets a dot
 constexpr std::size_t kFewest = 4, kFewestWithoutTable = 6;
 constexpr double kShortest = 0.12;                      ///< metres between the two that are farthest apart
 constexpr double kAstray = 0.005;                       ///< metres by which a single point errs too much
@@ -38,10 +38,6 @@ const CalibratedCamera& lensOf(const Installation& room, const TouchedDot& dot) 
     if (dot.projector >= room.projectors.size())
         throw InvalidInput("touched dot", "there is no such projector", "name one of the installation");
     return room.projectors[dot.projector].camera;
-}
-
-glm::dvec3 inTracker(const RayRow& row, const glm::dvec3& tip) {
-    return row.pointer * (row.tip ? tip : glm::dvec3(0.0));
 }
 
 /// Where the table is known: rays meet it in points.
@@ -96,13 +92,12 @@ Pose closedForm(const std::vector<RayRow>& rows, const std::vector<glm::dvec3>& 
 
 /// A mirror image of a plane is the plane turned over: then the pointer would stand behind the table.
 void checkSide(const std::vector<RayRow>& rows, const Figures& figures) {
+    if (!(glm::length(figures.tip) > kLongTip)) return;
     double behind = 0.0;
-    for (const RayRow& row : rows)
-        if (row.tip && glm::length(figures.tip) > kLongTip)
-            behind +=
-                glm::dot(figures.worldFromTracker.rotation * (row.pointer.rotation * -figures.tip), row.direction) > 0.0
-                    ? 1.0
-                    : -1.0;
+    for (const RayRow& row : rows) {
+        const glm::dvec3 toPointer = figures.worldFromTracker.rotation * (row.pointer.rotation * -figures.tip);
+        behind += glm::dot(toPointer, row.direction) > 0.0 ? 1.0 : -1.0;
+    }
     if (behind > 0.0)
         registration::refuse(Cause::mirrored, kDots,
                              "the pointer would stand behind what it touches: the tracker's coordinates are "
@@ -110,30 +105,7 @@ void checkSide(const std::vector<RayRow>& rows, const Figures& figures) {
                              "let the tracker tell right-handed coordinates, and calibrate the tip by pivoting");
 }
 
-void judge(TrackerPlace& place, const DotRows& dots) {
-    std::size_t astray = 0;
-    double squares = 0.0;
-    for (std::size_t i = 0; i < dots.rows.size(); ++i) {
-        const double miss = registration::missOf(dots.rows[i], place.figures);
-        place.points.push_back({dots.names[i], miss});
-        if (miss < kAstray) {
-            squares += miss * miss;
-            continue;
-        }
-        ++astray;
-        place.warnings.push_back({Cause::pointSuspicious,
-                                  dots.names[i],
-                                  {},
-                                  "it lies " + number(1000.0 * miss, 1) + " mm from where the others have it",
-                                  "it counts for little; touch it again"});
-    }
-    if (4 * astray > dots.rows.size())
-        registration::refuse(Cause::modelDoesNotFit, kDots,
-                             std::to_string(astray) + " of " + std::to_string(dots.rows.size()) +
-                                 " points contradict the others, by " + number(1000.0 * rmsOf(place.points), 0) +
-                                 " mm RMS of all",
-                             "see that each was touched while its own dot was shown, with the tip that was measured");
-    place.rms = std::sqrt(squares / double(dots.rows.size() - astray));
+void judgeHold(FittedPlace& place) {
     if (!(place.shiftSigma < kOpen))
         registration::refuse(Cause::pointsDegenerate, kDots,
                              "they leave the place open by " + number(1000.0 * place.shiftSigma, 1) + " mm",
@@ -155,7 +127,7 @@ DotRows rowsOf(std::span<const TouchedDot> dots, const Installation& room, const
     for (const TouchedDot& dot : dots) {
         const CalibratedCamera& lens = lensOf(room, dot);
         const Rest rest = restOf(withoutFault(dot.touch, undo), tip);
-        all.rows.push_back({rest.pointer, true, positionOf(lens), directionOf(lens, dot.pixel), height,
+        all.rows.push_back({rest.pointer, positionOf(lens), directionOf(lens, dot.pixel), height,
                             std::hypot(kDotSigma, noiseOf(rest))});
         all.names.push_back(dot.touch.name);
         all.warnings.insert(all.warnings.end(), rest.warnings.begin(), rest.warnings.end());
@@ -163,42 +135,24 @@ DotRows rowsOf(std::span<const TouchedDot> dots, const Installation& room, const
     return all;
 }
 
-DotRows rowsOf(std::span<const SeenMarker> markers, const Installation& room, const CaptureFault* undo) {
-    DotRows all;
-    for (const SeenMarker& marker : markers) {
-        if (marker.camera >= room.cameras.size())
-            throw InvalidInput("seen marker", "there is no such camera", "name one of the installation");
-        const glm::dvec3& at = marker.inTracker;
-        if (!std::isfinite(at.x + at.y + at.z + marker.pixel.x + marker.pixel.y))
-            registration::refuse(Cause::notANumber, marker.name.c_str(), "its place is no number",
-                                 "leave out markers that the tracker does not see");
-        const CalibratedCamera& lens = room.cameras[marker.camera].camera;
-        const Pose pose{at, {1.0, 0.0, 0.0, 0.0}};
-        all.rows.push_back({undo ? undo->pose(pose) : pose, false, positionOf(lens), directionOf(lens, marker.pixel),
-                            std::nullopt, kMarkerSigma});
-        all.rows.back().pointer.rotation = {1.0, 0.0, 0.0, 0.0};
-        all.names.push_back(marker.name);
-    }
-    return all;
-}
-
-TrackerPlace placeTracker(const DotRows& dots, const registration::TipRow& tip, const Progress& progress) {
+FittedPlace placeTracker(const DotRows& dots, const registration::TipRow& tip, const Progress& progress) {
     checkNumber(dots.rows.size(), kFewest, "touch six or more, all over the table");
     std::vector<glm::dvec3> places;
-    for (const RayRow& row : dots.rows) places.push_back(inTracker(row, tip.tip));
+    for (const RayRow& row : dots.rows) places.push_back(row.pointer * tip.tip);
     registration::checkLayout(places, kDots, kShortest);
     const Figures start{closedForm(dots.rows, places), tip.tip, {}, {}};
     checkSide(dots.rows, start);
-    const bool tips = std::ranges::any_of(dots.rows, &RayRow::tip);
     const registration::Refined refined =
-        registration::refine({dots.rows, {}, {}, tip}, start, {true, tips, false, false}, progress);
-    TrackerPlace place;
+        registration::refine({dots.rows, {}, {}, tip}, start, {true, true, false, false}, progress);
+    FittedPlace place;
     place.figures = refined.figures;
     place.turnSigma = refined.sigmas.trackerTurn;
     place.shiftSigma = refined.sigmas.trackerShift;
     place.tipSigma = refined.sigmas.trackerTip;
     place.warnings = dots.warnings;
-    judge(place, dots);
+    registration::judgePoints(place, dots, kAstray, kDots,
+                              "see that each was touched while its own dot was shown, with the tip that was measured");
+    judgeHold(place);
     return place;
 }
 

@@ -10,7 +10,7 @@
 #include "calibration/registration/touch.h"
 #include "core/scene/installation.h"
 
-/// The tracker's world in the room's, by points that a calibrated projector or camera sees as rays.
+/// The tracker's world in the room's, by points that a calibrated projector sees as rays.
 namespace lumorph {
 
 /// A dot that a projector shows at a pixel, and a pointer's tip held on it.
@@ -20,42 +20,16 @@ struct TouchedDot {
     Touch touch;
 };
 
-/// A single marker of the tracker, and where a camera saw it at the same moment.
-struct SeenMarker {
-    std::string name;
-    std::size_t camera = 0;
-    glm::dvec2 pixel{0.0};
-    glm::dvec3 inTracker{0.0}; ///< metres
-};
-
-/// Where the tracker's world lies in the room's.
-struct TrackerPlace {
-    registration::Figures figures;            ///< `worldFromTracker`, and the tip as it fits best
-    double rms = 0.0;                         ///< metres by which the points miss
-    std::vector<PointError> points;           ///< one each
-    double turnSigma = 0.0, shiftSigma = 0.0; ///< radians; metres, in the middle of the points
-    double tipSigma = 0.0;                    ///< metres: what of `shiftSigma` the tip makes
-    std::vector<Finding> warnings;
-};
-
 /// The rows of dots and their rests. `height` is that of the table on which they lie, where it is known. Throws
 /// CaptureRefused as restOf does, InvalidInput for a projector that is not there.
-struct DotRows {
-    std::vector<registration::RayRow> rows;
-    std::vector<std::string> names;
-    std::vector<Finding> warnings;
-};
+using DotRows = registration::NamedRows<registration::RayRow>;
 [[nodiscard]] DotRows rowsOf(std::span<const TouchedDot> dots, const Installation& room, const glm::dvec3& tip,
                              std::optional<double> height, const CaptureFault* undo = nullptr);
-/// Likewise of markers that cameras see.
-[[nodiscard]] DotRows rowsOf(std::span<const SeenMarker> markers, const Installation& room,
-                             const CaptureFault* undo = nullptr);
-
 /// Closed form (a rigid fit to where the rays meet the table, or where the table is unknown a perspective of the
 /// points by SQPnP), then all together with the tip, which swings told before. Throws CaptureRefused:
 /// `too_few_points`, `points_degenerate` (on one line, too close together), `mirrored` (the pointer would stand behind
 /// what it touches), `model_does_not_fit`.
-[[nodiscard]] TrackerPlace placeTracker(const DotRows& dots, const registration::TipRow& tip,
-                                        const Progress& progress = {});
+[[nodiscard]] registration::FittedPlace placeTracker(const DotRows& dots, const registration::TipRow& tip,
+                                                     const Progress& progress = {});
 
 } // namespace lumorph
