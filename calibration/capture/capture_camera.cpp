@@ -4,6 +4,7 @@
 #include <mutex>
 
 #include <opencv2/core/utils/logger.hpp>
+#include <opencv2/imgproc.hpp>
 #include <opencv2/videoio.hpp>
 
 #include "calibration/capture/camera_controls.h"
