@@ -40,6 +40,12 @@ Lens lensAt(const double* numbers) {
     return lens;
 }
 
+PoseVector poseAt(const double* numbers) {
+    PoseVector pose;
+    std::copy_n(numbers, pose.size(), pose.begin());
+    return pose;
+}
+
 /// A board's height over its plane, its slope, and how it moves with the terms.
 struct Height {
     double value = 0.0;
@@ -225,14 +231,13 @@ public:
 private:
     template <typename Take>
     bool forEach(double const* const* parameters, Counts counts, bool wantSlopes, const Take& take) const {
-        static constexpr double kNothing[6] = {};
         BoardShape board = frame_;
         std::copy_n(parameters[2], kBoardParameters, board.terms.begin());
         const ViewTerms terms{view_,
                               lensAt(parameters[0]),
                               points_ ? lensAt(parameters[4]) : Lens{},
-                              PoseMatrix(parameters[1]),
-                              PoseMatrix(points_ ? parameters[3] : kNothing),
+                              PoseMatrix(poseAt(parameters[1])),
+                              PoseMatrix(points_ ? poseAt(parameters[3]) : PoseVector{}),
                               board};
         Eigen::Vector2d error;
         Slopes storage;
@@ -493,7 +498,7 @@ Eigen::MatrixXd informationOf(const ViewObservations& view, const BundleOptions&
 
 std::vector<cv::Point2d> cameraErrors(const ViewObservations& view, const BundleState& state,
                                       const PoseVector& cameraFromBoard) {
-    const PoseMatrix pose(cameraFromBoard.data());
+    const PoseMatrix pose(cameraFromBoard);
     const ViewTerms terms{view, state.camera, {}, pose, pose, state.board};
     std::vector<cv::Point2d> errors;
     for (std::size_t i = 0; i < view.corners.seen.size(); ++i) {
@@ -507,13 +512,13 @@ std::vector<cv::Point2d> cameraErrors(const ViewObservations& view, const Bundle
 cv::Point3d pointOnBoard(const cv::Point2d& pixel, const Lens& camera, const PoseVector& cameraFromBoard,
                          const BoardShape& board) {
     const auto [x, y] = directionOfPixel(camera, pixel.x, pixel.y);
-    const double depth = depthOfBoard({x, y, 1.0}, PoseMatrix(cameraFromBoard.data()), board);
+    const double depth = depthOfBoard({x, y, 1.0}, PoseMatrix(cameraFromBoard), board);
     return {depth * x, depth * y, depth};
 }
 
 cv::Point2d projectorPixel(const cv::Point3d& point, const BundleState& state) {
     const Eigen::Vector3d inProjector =
-        PoseMatrix(state.projectorFromCamera.data()) * Eigen::Vector3d(point.x, point.y, point.z);
+        PoseMatrix(state.projectorFromCamera) * Eigen::Vector3d(point.x, point.y, point.z);
     double pixel[2];
     projectPoint(state.projector.data(), inProjector.data(), pixel);
     return {pixel[0], pixel[1]};
@@ -521,12 +526,9 @@ cv::Point2d projectorPixel(const cv::Point3d& point, const BundleState& state) {
 
 std::vector<cv::Point2d> projectorErrors(const ViewObservations& view, const BundleState& state,
                                          const PoseVector& cameraFromBoard) {
-    const ViewTerms terms{view,
-                          state.camera,
-                          state.projector,
-                          PoseMatrix(cameraFromBoard.data()),
-                          PoseMatrix(state.projectorFromCamera.data()),
-                          state.board};
+    const ViewTerms terms{
+        view,       state.camera, state.projector, PoseMatrix(cameraFromBoard), PoseMatrix(state.projectorFromCamera),
+        state.board};
     std::vector<cv::Point2d> errors;
     for (const ProjectorPoint& point : view.projector) {
         Eigen::Vector2d error = Eigen::Vector2d::Zero();

@@ -7,11 +7,9 @@
 
 #include "calibration/solve/lens_model.h"
 #include "calibration/solve/observations.h"
+#include "core/geometry/rigid.h"
 
 namespace lumorph {
-
-/// A rotation vector (radians) and a translation (the board's unit).
-using PoseVector = std::array<double, 6>;
 
 /// How far a board is from the plane it was printed as: terms of its height over the plane z = 0, by u and v, which run
 /// from -1 to 1 over the longer side (uu, uv, vv, uuu, uuv, uvv, vvv; the board's unit), and how much longer it is

@@ -293,32 +293,10 @@ std::optional<cv::Point2d> errorOf(const SeenLight& seen, const InstallationStat
     return cv::Point2d(error[0], error[1]);
 }
 
-PoseVector composed(const PoseVector& a, const PoseVector& b) {
-    double qa[4], qb[4], q[4], way[3];
-    ceres::AngleAxisToQuaternion(a.data(), qa);
-    ceres::AngleAxisToQuaternion(b.data(), qb);
-    ceres::QuaternionProduct(qa, qb, q);
-    PoseVector result;
-    ceres::QuaternionToAngleAxis(q, result.data());
-    ceres::AngleAxisRotatePoint(a.data(), b.data() + 3, way);
-    for (std::size_t i = 0; i < 3; ++i) result[3 + i] = way[i] + a[3 + i];
-    return result;
-}
-
-PoseVector inverted(const PoseVector& pose) {
-    PoseVector result{-pose[0], -pose[1], -pose[2], 0, 0, 0};
-    double way[3];
-    ceres::AngleAxisRotatePoint(result.data(), pose.data() + 3, way);
-    for (std::size_t i = 0; i < 3; ++i) result[3 + i] = -way[i];
-    return result;
-}
-
 SeenLight lightOnBoard(const ProjectorPoint& pixels, const Lens& camera, const PoseVector& cameraFromBoard,
                        const BoardShape& board) {
     const cv::Point3d seen = pointOnBoard(pixels.camera, camera, cameraFromBoard, board);
-    const double inCamera[3] = {seen.x, seen.y, seen.z};
-    double place[3];
-    poseForward(inverted(cameraFromBoard).data(), inCamera, place);
+    const glm::dvec3 place = Rigid::exp(cameraFromBoard).inverse() * glm::dvec3(seen.x, seen.y, seen.z);
     const double step = 1e-4 * board.half;
     const cv::Vec3d at = onBoard(board, {place[0], place[1], 0.0});
     const cv::Vec3d across = cv::Vec3d(onBoard(board, {place[0] + step, place[1], 0.0})) - at;

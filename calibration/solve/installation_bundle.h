@@ -83,10 +83,6 @@ double refineInstallation(const InstallationObservations& observations, const In
 [[nodiscard]] std::optional<cv::Point2d> errorOf(const SeenPoint& seen, const InstallationState& state);
 [[nodiscard]] std::optional<cv::Point2d> errorOf(const SeenLight& seen, const InstallationState& state);
 
-/// `a` after `b`: a point X becomes a(b(X)); and the way back.
-[[nodiscard]] PoseVector composed(const PoseVector& a, const PoseVector& b);
-[[nodiscard]] PoseVector inverted(const PoseVector& pose);
-
 /// Light on a board that a camera saw: the plane is that of the board there, which need not be flat.
 [[nodiscard]] SeenLight lightOnBoard(const ProjectorPoint& pixels, const Lens& camera,
                                      const PoseVector& cameraFromBoard, const BoardShape& board);

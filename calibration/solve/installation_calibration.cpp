@@ -103,7 +103,8 @@ private:
         state_.cameras[c].lens = solved.camera.lens;
         takeWarnings(solved.warnings, cameras_[c].name);
         boards_[c].resize(views_.size());
-        for (std::size_t i = 0; i < places.size(); ++i) boards_[c][places[i]] = solved.state.cameraFromBoard[i];
+        for (std::size_t i = 0; i < places.size(); ++i)
+            boards_[c][places[i]] = Rigid::exp(solved.state.cameraFromBoard[i]);
         progress_.report(0.3 * static_cast<double>(c + 1) / static_cast<double>(cameras_.size()), "cameras");
     }
 
@@ -115,13 +116,13 @@ private:
         }
     }
 
-    void placeCamera(std::size_t c, const PoseVector& fromWorld) {
-        state_.cameras[c].fromWorld = fromWorld;
+    void placeCamera(std::size_t c, const Rigid& fromWorld) {
+        state_.cameras[c].fromWorld = fromWorld.log();
         cameraPlaced_[c] = true;
-        const PoseVector toWorld = inverted(fromWorld);
+        const Rigid toWorld = fromWorld.inverse();
         for (std::size_t v = 0; v < views_.size(); ++v)
             if (sees(c, v) && !boardPlaced_[v]) {
-                state_.worldFromBody[v] = composed(toWorld, boards_[c][v]);
+                state_.worldFromBody[v] = (toWorld * boards_[c][v]).log();
                 boardPlaced_[v] = true;
             }
     }
@@ -139,12 +140,12 @@ private:
     /// By boards whose place is known, each of which the camera may have found turned.
     bool placeByBoards(std::size_t c) {
         double best = std::numeric_limits<double>::infinity();
-        PoseVector place{};
+        Rigid place;
         for (std::size_t v = 0; v < views_.size(); ++v) {
             if (!boardPlaced_[v] || !sees(c, v)) continue;
             const auto tryBoard = [&](const BoardPoints& corners) {
                 const PoseVector fromBoard = poseFromCamera({views_[v].name, corners, {}}, state_.cameras[c].lens);
-                const PoseVector fromWorld = composed(fromBoard, inverted(state_.worldFromBody[v]));
+                const Rigid fromWorld = Rigid::exp(fromBoard) * Rigid::exp(state_.worldFromBody[v]).inverse();
                 const double error = placeError(c, fromWorld);
                 if (!(error < best)) return;
                 best = error;
@@ -168,17 +169,17 @@ private:
     }
 
     [[nodiscard]] double boardError(std::size_t c, std::size_t v, const BoardPoints& corners,
-                                    const PoseVector& cameraFromWorld) const {
+                                    const Rigid& cameraFromWorld) const {
         const ViewObservations view{views_[v].name, corners, {}};
         const double error = rmsOf(cameraErrors(view, {state_.cameras[c].lens, {}, {}, board_, {}},
-                                                composed(cameraFromWorld, state_.worldFromBody[v])));
+                                                (cameraFromWorld * Rigid::exp(state_.worldFromBody[v])).log()));
         return std::isfinite(error) ? std::min(error, kNotThere) : kNotThere;
     }
 
     /// Of all boards that are placed, and of the light on them.
-    [[nodiscard]] double placeError(std::size_t c, const PoseVector& fromWorld) const {
+    [[nodiscard]] double placeError(std::size_t c, const Rigid& fromWorld) const {
         InstallationState there = state_;
-        there.cameras[c].fromWorld = fromWorld;
+        there.cameras[c].fromWorld = fromWorld.log();
         double sum = 0.0;
         for (std::size_t v = 0; v < views_.size(); ++v) {
             if (!boardPlaced_[v] || !sees(c, v)) continue;
@@ -204,8 +205,8 @@ private:
 
     [[nodiscard]] SeenLight seenLight(std::size_t c, std::size_t p, std::size_t v, const ProjectorPoint& pixels,
                                       const InstallationState& there) const {
-        SeenLight seen = lightOnBoard(pixels, there.cameras[c].lens,
-                                      composed(there.cameras[c].fromWorld, there.worldFromBody[v]), board_);
+        const Rigid fromBoard = Rigid::exp(there.cameras[c].fromWorld) * Rigid::exp(there.worldFromBody[v]);
+        SeenLight seen = lightOnBoard(pixels, there.cameras[c].lens, fromBoard.log(), board_);
         seen.camera = static_cast<int>(c);
         seen.projector = static_cast<int>(p);
         seen.body = static_cast<int>(v);
@@ -232,7 +233,8 @@ private:
         const ProcamCalibration pair = solvePair(*best, p);
         result_.projectors[p] = pair.projector;
         state_.projectors[p].lens = pair.projector.lens;
-        state_.projectors[p].fromWorld = composed(pair.projectorFromCamera, state_.cameras[*best].fromWorld);
+        state_.projectors[p].fromWorld =
+            (Rigid::exp(pair.projectorFromCamera) * Rigid::exp(state_.cameras[*best].fromWorld)).log();
         projectorPlaced_[p] = true;
         takeWarnings(pair.warnings, projectors_[p].name);
         if (*best == 0) board_ = pair.state.board; // the boards are called as the first camera calls them
@@ -243,7 +245,7 @@ private:
         for (std::size_t p = 0; p < projectors_.size(); ++p) {
             if (!projectorPlaced_[p] || sharedPoses(c, p) < kFewestShared) continue;
             const ProcamCalibration pair = solvePair(c, p);
-            placeCamera(c, composed(inverted(pair.projectorFromCamera), state_.projectors[p].fromWorld));
+            placeCamera(c, Rigid::exp(pair.projectorFromCamera).inverse() * Rigid::exp(state_.projectors[p].fromWorld));
             return true;
         }
         return false;
@@ -354,7 +356,7 @@ private:
     std::vector<InstallationView> views_;
     const std::vector<NamedDevice>&cameras_, &projectors_;
     const Progress& progress_;
-    std::vector<std::vector<PoseVector>> boards_; ///< by camera and view, from the camera alone
+    std::vector<std::vector<Rigid>> boards_; ///< by camera and view, from the camera alone
     std::vector<bool> cameraPlaced_, projectorPlaced_, boardPlaced_;
     BoardShape board_;
     InstallationState state_;

@@ -8,7 +8,8 @@
 #include <utility>
 
 #include <Eigen/Dense>
-#include <opencv2/calib3d.hpp>
+#include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
 
 #include "calibration/solve/first_guess.h"
 #include "calibration/solve/installation_bundle.h"
@@ -29,15 +30,7 @@ Lens leftForRight(Lens lens, cv::Size size) {
     return lens;
 }
 
-/// A rotation vector's matrix.
-Eigen::Matrix3d turnOf(const PoseVector& pose) {
-    cv::Matx33d turn;
-    cv::Rodrigues(cv::Vec3d(pose[0], pose[1], pose[2]), turn);
-    Eigen::Matrix3d matrix;
-    for (int row = 0; row < 3; ++row)
-        for (int column = 0; column < 3; ++column) matrix(row, column) = turn(row, column);
-    return matrix;
-}
+Eigen::Matrix3d eigenOf(const glm::dmat3& matrix) { return Eigen::Map<const Eigen::Matrix3d>(&matrix[0][0]); }
 
 class MirrorSolver {
 public:
@@ -107,8 +100,9 @@ private:
     [[nodiscard]] Reflection reflectionOf(std::size_t v, const BoardPoints& direct) const {
         const Eigen::DiagonalMatrix<double, 3> flip(-1.0, 1.0, 1.0);
         const PoseVector pose = poseFromCamera({views_[v].name, direct, {}}, result_.procam.camera.lens);
-        const PoseVector both = composed(result_.procam.state.cameraFromBoard[v], inverted(pose));
-        return {flip * turnOf(both), flip * Eigen::Vector3d(both[3], both[4], both[5])};
+        const Rigid both = Rigid::exp(result_.procam.state.cameraFromBoard[v]) * Rigid::exp(pose).inverse();
+        const glm::dvec3& way = both.translation;
+        return {flip * eigenOf(both.rotation), flip * Eigen::Vector3d(way.x, way.y, way.z)};
     }
 
     /// How far it is from a reflection: such a one is symmetric, and shifts along the direction that it turns round.
@@ -145,22 +139,17 @@ private:
     void refineWith(const std::array<double, 3>& mirror) {
         InstallationState state;
         state.mirror = mirror;
-        const Eigen::Vector3d nearest(mirror[0], mirror[1], mirror[2]);
-        const Eigen::Vector3d normal = nearest.normalized();
-        const Eigen::DiagonalMatrix<double, 3> flip(-1.0, 1.0, 1.0);
-        const Eigen::Matrix3d turn = flip * (Eigen::Matrix3d::Identity() - 2.0 * normal * normal.transpose());
-        const Eigen::Vector3d way = flip * (2.0 * nearest);
-        cv::Matx33d matrix;
-        for (int row = 0; row < 3; ++row)
-            for (int column = 0; column < 3; ++column) matrix(row, column) = turn(row, column);
-        cv::Vec3d axis;
-        cv::Rodrigues(matrix, axis);
-        const PoseVector turnedFromCamera{axis[0], axis[1], axis[2], way.x(), way.y(), way.z()};
+        const glm::dvec3 nearest(mirror[0], mirror[1], mirror[2]);
+        const glm::dvec3 normal = glm::normalize(nearest);
+        glm::dmat3 flip(1.0);
+        flip[0][0] = -1.0;
+        const Rigid turnedFromCamera(flip * (glm::dmat3(1.0) - 2.0 * glm::outerProduct(normal, normal)),
+                                     flip * (2.0 * nearest));
         const ProcamCalibration& procam = result_.procam;
         state.cameras = {{procam.camera.lens, PoseVector{}}};
-        state.projectors = {{procam.projector.lens, composed(procam.projectorFromCamera, turnedFromCamera)}};
+        state.projectors = {{procam.projector.lens, (Rigid::exp(procam.projectorFromCamera) * turnedFromCamera).log()}};
         for (const PoseVector& board : procam.state.cameraFromBoard)
-            state.worldFromBody.push_back(composed(inverted(turnedFromCamera), board));
+            state.worldFromBody.push_back((turnedFromCamera.inverse() * Rigid::exp(board)).log());
         nameBoards(state);
         gather();
         InstallationFree free;

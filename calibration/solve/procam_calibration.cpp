@@ -9,7 +9,7 @@
 #include <utility>
 
 #include <Eigen/Dense>
-#include <opencv2/calib3d.hpp>
+#include <glm/geometric.hpp>
 
 #include "calibration/solve/board_shape.h"
 #include "calibration/solve/first_guess.h"
@@ -330,7 +330,7 @@ private:
     void requireTilt() const {
         double least = 1.0;
         for (const int a : use_)
-            for (const int b : use_) least = std::min(least, std::abs(normalOf(a).dot(normalOf(b))));
+            for (const int b : use_) least = std::min(least, std::abs(glm::dot(normalOf(a), normalOf(b))));
         if (std::acos(std::min(least, 1.0)) * 180.0 / kPi < kLeastTurnDegrees) throw frontal();
     }
 
@@ -340,11 +340,8 @@ private:
                                "capture it tilted by 20 to 45 degrees, to different sides"});
     }
 
-    [[nodiscard]] cv::Vec3d normalOf(int view) const {
-        const PoseVector& pose = state_.cameraFromBoard[static_cast<std::size_t>(view)];
-        cv::Matx33d rotation;
-        cv::Rodrigues(cv::Vec3d(pose[0], pose[1], pose[2]), rotation);
-        return {rotation(0, 2), rotation(1, 2), rotation(2, 2)};
+    [[nodiscard]] glm::dvec3 normalOf(int view) const {
+        return Rigid::exp(state_.cameraFromBoard[static_cast<std::size_t>(view)]).rotation[2];
     }
 
     /// From what is left of the observations: their noise, and how far neighbours err alike.
