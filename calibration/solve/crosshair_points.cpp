@@ -8,7 +8,6 @@
 
 #include <Eigen/Dense>
 #include <glm/geometric.hpp>
-#include <opencv2/calib3d.hpp>
 
 #include "calibration/solve/crosshair_calibration.h"
 #include "core/base/error.h"

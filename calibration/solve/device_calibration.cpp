@@ -476,6 +476,7 @@ private:
         const auto& camera = state_.cameras[c];
         const glm::dvec3 from = placeOf(camera.fromWorld);
         const std::size_t used = std::min(cells.size(), most);
+        std::vector<SeenLight> found;
         for (std::size_t i = 0; i < used; ++i) {
             const LightCell& cell = cells[i * cells.size() / used];
             const DeviceSurface& surface = surfaces_[cell.shot];
@@ -489,11 +490,13 @@ private:
             SeenLight seen;
             seen.camera = static_cast<int>(c);
             seen.projector = static_cast<int>(p);
-            seen.normal = {normal.x, normal.y, normal.z};
-            seen.distance = glm::dot(normal, surface.middle(face));
+            seen.plane = {{normal.x, normal.y, normal.z}, glm::dot(normal, surface.middle(face))};
             seen.pixels = cell.pixels;
-            if (errorOf(seen, state_)) into.lights.push_back(seen);
+            found.push_back(seen);
         }
+        const auto errors = errorsOf(found, state_);
+        for (std::size_t i = 0; i < found.size(); ++i)
+            if (errors[i]) into.lights.push_back(found[i]);
         return used;
     }
 
@@ -502,9 +505,8 @@ private:
     [[nodiscard]] double explainedShare(std::size_t c, std::size_t p) const {
         const auto explained = [this](const InstallationObservations& seen) {
             double sum = 0.0;
-            for (const SeenLight& light : seen.lights)
-                if (const auto error = errorOf(light, state_))
-                    sum += std::max(0.0, 1.0 - cv::norm(*error) / kExplained);
+            for (const auto& error : errorsOf(seen.lights, state_))
+                if (error) sum += std::max(0.0, 1.0 - cv::norm(*error) / kExplained);
             return sum;
         };
         InstallationObservations moved, any;
@@ -547,8 +549,8 @@ private:
     /// Robust standard deviation of a coordinate, over light that has an error.
     [[nodiscard]] double noiseOf(const InstallationObservations& seen) const {
         std::vector<double> lengths;
-        for (const SeenLight& light : seen.lights)
-            if (const auto error = errorOf(light, state_)) lengths.push_back(cv::norm(*error));
+        for (const auto& error : errorsOf(seen.lights, state_))
+            if (error) lengths.push_back(cv::norm(*error));
         if (lengths.empty()) return std::numeric_limits<double>::infinity();
         const auto middle = lengths.begin() + static_cast<std::ptrdiff_t>(lengths.size() / 2);
         std::ranges::nth_element(lengths, middle);
@@ -630,8 +632,8 @@ private:
 
     void report() {
         std::size_t fits = 0;
-        for (const SeenLight& light : seen_.lights)
-            if (const auto error = errorOf(light, state_)) fits += cv::norm(*error) < 5.0 * noise_.projector;
+        for (const auto& error : errorsOf(seen_.lights, state_))
+            if (error) fits += cv::norm(*error) < 5.0 * noise_.projector;
         result_.rms = noise_.projector;
         result_.onDevice = static_cast<double>(fits) / std::max<double>(1.0, static_cast<double>(seen_.lights.size()));
         if (result_.rms > kDeviceFits || result_.onDevice < kFitShare) throw misfit(result_.rms);

@@ -40,7 +40,6 @@ public:
     MirrorCalibration solve() {
         turned_ = turnedViews();
         result_.procam = calibrateProcam(turned_, camera_, projector_, {}, progress_.part(0.0, 0.8));
-        takeLights();
         result_.procam.camera.lens = leftForRight(result_.procam.camera.lens, camera_);
         result_.procam.state.camera = result_.procam.camera.lens;
         if (const auto mirror = firstMirror()) {
@@ -65,24 +64,6 @@ private:
             for (ProjectorPoint& point : turned.back().projector) point.camera = turn(point.camera);
         }
         return turned;
-    }
-
-    /// Where on the boards light was seen, as long as all is still that of the picture turned left for right.
-    void takeLights() {
-        const BundleState& state = result_.procam.state;
-        for (std::size_t v = 0; v < views_.size(); ++v) {
-            const auto& light = views_[v].light;
-            const std::size_t used = std::min(light.size(), kLightsOfMirrorView);
-            for (std::size_t i = 0; i < used; ++i) {
-                const std::size_t at = i * light.size() / used;
-                SeenLight seen =
-                    lightOnBoard(turned_[v].projector[at], state.camera, state.cameraFromBoard[v], state.board);
-                seen.body = static_cast<int>(v);
-                seen.mirrored = true;
-                seen.pixels = light[at];
-                observations_.lights.push_back(seen);
-            }
-        }
     }
 
     [[nodiscard]] static bool seenDirectly(const MirrorView& view) {
@@ -139,6 +120,7 @@ private:
     void refineWith(const std::array<double, 3>& mirror) {
         InstallationState state;
         state.mirror = mirror;
+        state.board = result_.procam.state.board;
         const glm::dvec3 nearest(mirror[0], mirror[1], mirror[2]);
         const glm::dvec3 normal = glm::normalize(nearest);
         glm::dmat3 flip(1.0);
@@ -158,12 +140,18 @@ private:
         free.bodies.assign(views_.size(), true);
         free.mirror = true;
         InstallationNoise noise;
+        InstallationNames names{{"the camera"}, {"the projector"}, {}};
+        for (const MirrorView& view : views_) names.bodies.push_back(view.name);
+        // What was left out before is here again, and is named again.
+        std::erase_if(result_.procam.warnings, [](const Finding& w) { return w.cause == Cause::pointSuspicious; });
         for (int round = 0; round < 2; ++round) {
             progress_.throwIfCancelled();
             progress_.report(0.8 + 0.05 * round, "solving with the mirror");
             refineInstallation(observations_, free, noise, state);
-            noise.camera = std::max(kLeastNoise, rmsOfSeen(observations_.points, state) / std::numbers::sqrt2);
-            noise.projector = std::max(kLeastNoise, rmsOfSeen(observations_.lights, state) / std::numbers::sqrt2);
+            noise.camera = std::max(kLeastNoise, sigmaOf(errorsOfSeen(observations_.points, state), 0.0));
+            noise.projector = std::max(kLeastNoise, sigmaOf(errorsOfSeen(observations_.lights, state), 0.0));
+            const std::vector<Finding> dropped = dropOutliers(observations_, state, noise, names);
+            result_.procam.warnings.insert(result_.procam.warnings.end(), dropped.begin(), dropped.end());
         }
         takeResult(state, installationSigmas(observations_, free, noise, state));
     }
@@ -191,31 +179,33 @@ private:
             const int body = static_cast<int>(v);
             const auto add = [&](const BoardPoints& corners, bool mirrored) {
                 for (std::size_t i = 0; i < corners.seen.size(); ++i)
-                    observations_.points.push_back(
-                        {0, body, mirrored, onBoard(result_.procam.state.board, corners.board[i]), corners.seen[i]});
+                    observations_.points.push_back({0, body, mirrored, corners.board[i], corners.seen[i]});
             };
             add(views_[v].mirrored, true);
+            const auto& light = views_[v].light;
+            const std::size_t used = std::min(light.size(), kLightsOfMirrorView);
+            for (std::size_t i = 0; i < used; ++i)
+                observations_.lights.push_back({0, 0, body, true, light[i * light.size() / used]});
             if (seenDirectly(views_[v])) add(direct_[v], false);
         }
     }
 
     template <typename Seen>
-    static double rmsOfSeen(const std::vector<Seen>& all, const InstallationState& state, int body = -1) {
+    static std::vector<cv::Point2d> errorsOfSeen(std::vector<Seen> all, const InstallationState& state, int body = -1) {
+        if (body >= 0) std::erase_if(all, [body](const Seen& seen) { return seen.body != body; });
         std::vector<cv::Point2d> errors;
-        for (const Seen& seen : all)
-            if (body < 0 || seen.body == body)
-                errors.push_back(errorOf(seen, state).value_or(cv::Point2d(100.0, 100.0)));
-        return rmsOf(errors);
+        for (const auto& error : errorsOf(all, state)) errors.push_back(error.value_or(cv::Point2d(100.0, 100.0)));
+        return errors;
     }
 
     void takeResult(const InstallationState& state, const InstallationState& sigma) {
         ProcamCalibration& procam = result_.procam;
         procam.camera.lens = state.cameras[0].lens;
         procam.camera.sigma = sigma.cameras[0].lens;
-        procam.camera.rms = rmsOfSeen(observations_.points, state);
+        procam.camera.rms = rmsOf(errorsOfSeen(observations_.points, state));
         procam.projector.lens = state.projectors[0].lens;
         procam.projector.sigma = sigma.projectors[0].lens;
-        procam.projector.rms = rmsOfSeen(observations_.lights, state);
+        procam.projector.rms = rmsOf(errorsOfSeen(observations_.lights, state));
         procam.projectorFromCamera = state.projectors[0].fromWorld;
         procam.projectorFromCameraSigma = sigma.projectors[0].fromWorld;
         procam.rms = std::hypot(procam.camera.rms, procam.projector.rms) / std::numbers::sqrt2;
@@ -224,8 +214,8 @@ private:
         double worst = -1.0;
         for (std::size_t v = 0; v < views_.size(); ++v) {
             ViewQuality& view = procam.views[v];
-            view.cameraRms = rmsOfSeen(observations_.points, state, static_cast<int>(v));
-            view.projectorRms = rmsOfSeen(observations_.lights, state, static_cast<int>(v));
+            view.cameraRms = rmsOf(errorsOfSeen(observations_.points, state, static_cast<int>(v)));
+            view.projectorRms = rmsOf(errorsOfSeen(observations_.lights, state, static_cast<int>(v)));
             const double error = std::hypot(view.cameraRms, view.projectorRms);
             if (error > worst) procam.worstView = view.name;
             worst = std::max(worst, error);
