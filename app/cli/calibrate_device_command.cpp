@@ -50,8 +50,8 @@ nlohmann::json placedJson(const CalibratedDevice& device, const std::string& nam
 
 void printPlaced(const CalibratedDevice& device, const std::string& name, const PoseVector& pose) {
     printDevice(name.c_str(), device);
-    const PoseVector place = inverted(pose);
-    std::printf("  stands at       (%.3f, %.3f, %.3f) m in the device's frame\n", place[3], place[4], place[5]);
+    const glm::dvec3 place = Rigid::exp(pose).inverse().translation;
+    std::printf("  stands at       (%.3f, %.3f, %.3f) m in the device's frame\n", place.x, place.y, place.z);
 }
 
 void calibrateDevice(const DeviceCaptureArguments& arguments, const std::string& folder, bool json,

@@ -5,8 +5,6 @@
 #include <cstdio>
 #include <string>
 
-#include <opencv2/calib3d.hpp>
-
 #include "core/base/error.h"
 
 namespace lumorph::cli {
@@ -52,10 +50,9 @@ nlohmann::json jsonOf(const std::vector<Finding>& findings) {
 }
 
 nlohmann::json rotationOf(const PoseVector& pose) {
-    cv::Matx33d rotation;
-    cv::Rodrigues(cv::Vec3d(pose[0], pose[1], pose[2]), rotation);
+    const glm::dmat3 rotation = Rigid::exp(pose).rotation;
     nlohmann::json rows = nlohmann::json::array();
-    for (int row = 0; row < 3; ++row) rows.push_back({rotation(row, 0), rotation(row, 1), rotation(row, 2)});
+    for (int row = 0; row < 3; ++row) rows.push_back({rotation[0][row], rotation[1][row], rotation[2][row]});
     return rows;
 }
 

@@ -79,9 +79,9 @@ void printDevices(const std::vector<NamedDevice>& names, const std::vector<Calib
                   const std::vector<InstallationDevice>& state) {
     for (std::size_t i = 0; i < names.size(); ++i) {
         printDevice(names[i].name.c_str(), devices[i]);
-        const PoseVector place = inverted(state[i].fromWorld);
-        std::printf("  at (%.2f, %.2f, %.2f) in the first camera's frame, in the board's unit\n", place[3], place[4],
-                    place[5]);
+        const glm::dvec3 place = Rigid::exp(state[i].fromWorld).inverse().translation;
+        std::printf("  at (%.2f, %.2f, %.2f) in the first camera's frame, in the board's unit\n", place.x, place.y,
+                    place.z);
     }
 }
 

@@ -18,6 +18,7 @@
 #include "calibration/lab/lab_light.h"
 #include "calibration/lab/lab_world.h"
 #include "core/base/error.h"
+#include "core/geometry/rigid.h"
 
 namespace lumorph {
 
@@ -213,8 +214,7 @@ void BoardLab::Data::lookAlong(const Lab& room, const glm::dvec2& pixel, Gleam& 
     if (!hit || hit->surface < 0) return;
     float albedo = tableAlbedo;
     if (hit->surface == 1) {
-        const glm::dvec3 at =
-            glm::transpose(glm::dmat3(*worldFromBoard)) * (hit->point - glm::dvec3((*worldFromBoard)[3]));
+        const glm::dvec3 at = Rigid(*worldFromBoard).inverse() * hit->point;
         albedo = texture.albedo(at.x / (unit() * options.shape.stretch.x), at.y / (unit() * options.shape.stretch.y));
     }
     const double grey = greyOfRadiance() * static_cast<double>(albedo);

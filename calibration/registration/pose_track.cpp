@@ -140,17 +140,6 @@ std::optional<Pose> poseAt(const PoseTrack& track, double seconds, double longes
                 glm::slerp(from.pose.rotation, after->pose.rotation, share)};
 }
 
-Pose operator*(const Pose& aFromB, const Pose& bFromC) {
-    return {aFromB * bFromC.position, glm::normalize(aFromB.rotation * bFromC.rotation)};
-}
-
-glm::dvec3 operator*(const Pose& aFromB, const glm::dvec3& inB) { return aFromB.rotation * inB + aFromB.position; }
-
-Pose inverseOf(const Pose& pose) {
-    const glm::dquat back = glm::conjugate(pose.rotation);
-    return {-(back * pose.position), back};
-}
-
 double angleOf(const glm::dquat& rotation) {
     return 2.0 * std::atan2(glm::length(glm::dvec3(rotation.x, rotation.y, rotation.z)), std::abs(rotation.w));
 }

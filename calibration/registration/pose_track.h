@@ -40,10 +40,6 @@ struct NamedPoint {
 /// the last, and in a gap longer than `longestGap` seconds.
 [[nodiscard]] std::optional<Pose> poseAt(const PoseTrack& track, double seconds, double longestGap = 0.35);
 
-/// `aFromC` of `aFromB` and `bFromC`.
-[[nodiscard]] Pose operator*(const Pose& aFromB, const Pose& bFromC);
-[[nodiscard]] glm::dvec3 operator*(const Pose& aFromB, const glm::dvec3& inB);
-[[nodiscard]] Pose inverseOf(const Pose& pose);
 /// Angle of the turn, radians, 0 to pi.
 [[nodiscard]] double angleOf(const glm::dquat& rotation);
 /// Axis times angle, radians.

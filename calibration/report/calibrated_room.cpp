@@ -6,7 +6,6 @@
 
 #include <glm/geometric.hpp>
 #include <glm/mat3x3.hpp>
-#include <opencv2/calib3d.hpp>
 
 #include "core/base/error.h"
 #include "core/base/text.h"
@@ -14,28 +13,6 @@
 namespace lumorph {
 
 namespace {
-
-glm::dmat3 rotationOf(const PoseVector& pose) {
-    cv::Matx33d matrix;
-    cv::Rodrigues(cv::Vec3d(pose[0], pose[1], pose[2]), matrix);
-    glm::dmat3 rotation;
-    for (int row = 0; row < 3; ++row)
-        for (int column = 0; column < 3; ++column) rotation[column][row] = matrix(row, column);
-    return rotation;
-}
-
-glm::dvec3 shiftOf(const PoseVector& pose) { return {pose[3], pose[4], pose[5]}; }
-
-glm::dmat4 rigid(const glm::dmat3& rotation, const glm::dvec3& shift) {
-    glm::dmat4 matrix(rotation);
-    matrix[3] = glm::dvec4(shift, 1.0);
-    return matrix;
-}
-
-glm::dmat4 inverseOf(const glm::dmat4& pose) {
-    const glm::dmat3 back = glm::transpose(glm::dmat3(pose));
-    return rigid(back, -(back * glm::dvec3(pose[3])));
-}
 
 bool isKnown(const PoseVector& pose) {
     return std::ranges::all_of(pose, [](double number) { return std::isfinite(number); }) && pose[5] > 0.0;
@@ -53,8 +30,9 @@ glm::dvec3 middleOf(const CalibrationBoard& board) {
 /// The world from the camera with the board turned by so much.
 glm::dmat4 turnedWorld(const PoseVector& cameraFromBoard, const glm::dvec3& middle, double turn,
                        const RoomPlacement& placement) {
-    const glm::dmat3 boardInCamera = rotationOf(cameraFromBoard);
-    const glm::dvec3 centre = boardInCamera * middle + shiftOf(cameraFromBoard);
+    const Rigid board = Rigid::exp(cameraFromBoard);
+    const glm::dmat3& boardInCamera = board.rotation;
+    const glm::dvec3 centre = board * middle;
     // Whoever sees the printed side is above it; z of a board's frame points into it.
     const glm::dvec3 up = glm::dot(boardInCamera[2], centre) > 0.0 ? -boardInCamera[2] : boardInCamera[2];
     const glm::dvec3 along = boardInCamera[0];
@@ -63,14 +41,14 @@ glm::dmat4 turnedWorld(const PoseVector& cameraFromBoard, const glm::dvec3& midd
     const glm::dvec3 worldX = std::cos(turn) * along + std::sin(turn) * towards;
     const glm::dmat3 world = glm::transpose(glm::dmat3(worldX, up, glm::cross(worldX, up)));
     const glm::dvec3 place(placement.middle.x, 0.0, placement.middle.y);
-    return rigid(world, place - placement.metresPerUnit * (world * centre));
+    return Rigid(world, place - placement.metresPerUnit * (world * centre)).matrix();
 }
 
 /// The projector's frame from the world, metres.
 glm::dmat4 projectorFromWorld(const ProcamCalibration& result, const glm::dmat4& world, double metresPerUnit) {
-    const glm::dmat4 rig =
-        rigid(rotationOf(result.projectorFromCamera), metresPerUnit * shiftOf(result.projectorFromCamera));
-    return rig * inverseOf(world);
+    Rigid rig = Rigid::exp(result.projectorFromCamera);
+    rig.translation *= metresPerUnit;
+    return (rig * Rigid(world).inverse()).matrix();
 }
 
 template <typename Device> Device& deviceAt(std::vector<Device>& devices, std::size_t index, const char* what) {
@@ -116,8 +94,8 @@ glm::dmat4 worldFromCamera(const ProcamCalibration& result, const CalibrationBoa
     if (placement.projector >= installation.projectors.size()) return one;
     const glm::dvec3 believed = positionOf(installation.projectors[placement.projector].camera);
     const auto distance = [&](const glm::dmat4& world) {
-        const glm::dmat4 from = inverseOf(projectorFromWorld(result, world, placement.metresPerUnit));
-        return glm::length(glm::dvec3(from[3]) - believed);
+        const Rigid projector(projectorFromWorld(result, world, placement.metresPerUnit));
+        return glm::length(projector.inverse().translation - believed);
     };
     return distance(other) < distance(one) ? other : one;
 }
@@ -142,7 +120,7 @@ Installation withCalibration(Installation installation, const ProcamCalibration&
                         date};
     InstalledCamera& camera = deviceAt(installation.cameras, placement.camera, "camera");
     camera.camera = cameraOf(result.camera);
-    camera.camera.cameraFromWorld = inverseOf(world);
+    camera.camera.cameraFromWorld = Rigid(world).inverse().matrix();
     camera.lens = camera.pose = origin;
     requireAboveTable(camera.camera, "camera");
     if (hasProjector) {
@@ -159,10 +137,9 @@ Installation withCalibration(Installation installation, const ProcamCalibration&
 Installation withCrosshairs(Installation installation, const CrosshairCalibration& result, std::size_t points,
                             std::size_t projector, const std::string& date) {
     InstalledProjector& device = deviceAt(installation.projectors, projector, "projector");
-    const PoseVector& pose = result.projectorFromWorld;
     device.camera = cameraOf(result.projector);
-    device.camera.cameraFromWorld =
-        rigid(rotationOf(pose), shiftOf(pose)) * inverseOf(glm::dmat4(installation.worldFromDevice));
+    const Rigid deviceFromWorld = Rigid(glm::dmat4(installation.worldFromDevice)).inverse();
+    device.camera.cameraFromWorld = (Rigid::exp(result.projectorFromWorld) * deviceFromWorld).matrix();
     requireAboveTable(device.camera, "projector");
     device.lens = {Origin::Way::measured, "crosshairs, " + std::to_string(points) + " points",
                    date.empty() ? utcDate() : date};

@@ -52,10 +52,9 @@ json jsonOf(const CalibratedDevice& device) {
 }
 
 json rotationJson(const PoseVector& pose) {
-    cv::Matx33d rotation;
-    cv::Rodrigues(cv::Vec3d(pose[0], pose[1], pose[2]), rotation);
+    const glm::dmat3 rotation = Rigid::exp(pose).rotation;
     json rows = json::array();
-    for (int row = 0; row < 3; ++row) rows.push_back({rotation(row, 0), rotation(row, 1), rotation(row, 2)});
+    for (int row = 0; row < 3; ++row) rows.push_back({rotation[0][row], rotation[1][row], rotation[2][row]});
     return rows;
 }
 

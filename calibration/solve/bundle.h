@@ -5,31 +5,11 @@
 
 #include <Eigen/Core>
 
-#include "calibration/solve/lens_model.h"
-#include "calibration/solve/observations.h"
+#include "calibration/solve/installation_bundle.h"
 
 namespace lumorph {
 
-/// A rotation vector (radians) and a translation (the board's unit).
-using PoseVector = std::array<double, 6>;
-
-/// How far a board is from the plane it was printed as: terms of its height over the plane z = 0, by u and v, which run
-/// from -1 to 1 over the longer side (uu, uv, vv, uuu, uuv, uvv, vvv; the board's unit), and how much longer it is
-/// along x than was said, as a share of it. That a board is larger or smaller in both directions alike, no picture
-/// tells: it scales all lengths.
-inline constexpr int kBoardParameters = 8;
-enum BoardParameter { kBendUU, kBendUV, kBendVV, kBendUUU, kBendUUV, kBendUVV, kBendVVV, kBoardStretch };
-using BoardMask = std::array<bool, kBoardParameters>;
-struct BoardShape {
-    cv::Point2d middle;
-    double half = 1.0; ///< of the longer side
-    std::array<double, kBoardParameters> terms{};
-};
-
-/// A flat board around the points of all views.
-[[nodiscard]] BoardShape flatBoard(const std::vector<ViewObservations>& views);
-/// Where a printed point of the board lies.
-[[nodiscard]] cv::Point3d onBoard(const BoardShape& board, const cv::Point3d& printed);
+// One camera and one projector, as a thin layer over the bundle of an installation whose world is the camera's frame.
 
 /// Everything that is solved for. A point X of the first frame is R X + t in the other.
 struct BundleState {
@@ -56,10 +36,8 @@ struct BundleOptions {
 /// Views of a capture, by index.
 using ViewChoice = std::vector<int>;
 
-/// Moves `state` to where the robust sum of squares of reprojection errors is least: of the board's points in the
-/// camera, and of decoded camera pixels, cut with the board, in the projector. One problem, solved jointly (Ceres).
-/// Single points that cannot be there, as one whose ray misses the board, count as far off; a tenth of a view's make it
-/// impossible. Returns the cost, infinite where it cannot be evaluated at the start.
+/// Moves `state` to where the sum of losses is least, as `refineInstallation` does. Returns the cost, infinite where it
+/// cannot be evaluated at the start.
 double refine(const std::vector<ViewObservations>& views, const ViewChoice& use, const BundleOptions& options,
               BundleState& state);
 
@@ -104,12 +82,5 @@ struct BundleCovariance {
                                        const BoardShape& board = {});
 /// The projector pixel of a point in the camera's frame.
 [[nodiscard]] cv::Point2d projectorPixel(const cv::Point3d& point, const BundleState& state);
-
-/// Standard deviation of one coordinate of errors, pixels: what they leave when `freedom` of the coordinates were used
-/// up by what was solved for. Strays count as if they were twelve of it off.
-[[nodiscard]] double sigmaOf(const std::vector<cv::Point2d>& errors, double freedom);
-
-/// Root mean square length; 0 of none.
-[[nodiscard]] double rmsOf(const std::vector<cv::Point2d>& errors);
 
 } // namespace lumorph

@@ -273,12 +273,10 @@ private:
         result.projector.model = model_.free[kK1] ? "k1" : options_.lens ? "as it was known" : "pinhole";
         model_.lensOf(numbers_.data(), result.projector.lens.data());
         result.middle = middle_;
-        for (int i = 0; i < 6; ++i)
-            result.projectorFromWorld[static_cast<std::size_t>(i)] = numbers_[kLensParameters + i];
+        result.projectorFromWorld = middlePose();
         const double minus[3] = {-middle_.x, -middle_.y, -middle_.z};
-        double shift[3];
-        ceres::AngleAxisRotatePoint(numbers_.data() + kLensParameters, minus, shift);
-        for (int i = 0; i < 3; ++i) result.projectorFromWorld[static_cast<std::size_t>(3 + i)] += shift[i];
+        const glm::dvec3 shift = Rigid::exp(middlePose()) * glm::dvec3(minus[0], minus[1], minus[2]);
+        for (int i = 0; i < 3; ++i) result.projectorFromWorld[static_cast<std::size_t>(3 + i)] = shift[i];
         result.covariance = covariance();
         for (int i = 0; i < kLensParameters; ++i) {
             const auto at = static_cast<std::size_t>(i);
@@ -433,30 +431,23 @@ Eigen::Matrix<double, 2, 15> crosshairJacobian(const Lens& lens, const LensMask&
 }
 
 cv::Point2d CrosshairCalibration::pixelOf(const cv::Point3d& point) const {
-    const double world[3] = {point.x, point.y, point.z};
-    double inProjector[3], pixel[2];
-    ceres::AngleAxisRotatePoint(projectorFromWorld.data(), world, inProjector);
-    for (std::size_t i = 0; i < 3; ++i) inProjector[i] += projectorFromWorld[3 + i];
-    projectPoint(projector.lens.data(), inProjector, pixel);
+    const glm::dvec3 inProjector = Rigid::exp(projectorFromWorld) * glm::dvec3(point.x, point.y, point.z);
+    double pixel[2];
+    projectPoint(projector.lens.data(), &inProjector.x, pixel);
     return {pixel[0], pixel[1]};
 }
 
 double CrosshairCalibration::error95At(const cv::Point3d& point) const {
     const cv::Point3d from = point - middle;
-    const double world[3] = {from.x, from.y, from.z};
-    double way[3];
-    ceres::AngleAxisRotatePoint(projectorFromWorld.data(), world, way);
-    const double around[3] = {middle.x, middle.y, middle.z};
-    double toMiddle[3];
-    ceres::AngleAxisRotatePoint(projectorFromWorld.data(), around, toMiddle);
-    PoseVector pose = projectorFromWorld;
-    for (std::size_t i = 0; i < 3; ++i) pose[3 + i] += toMiddle[i];
+    const Rigid fromMiddle = Rigid::exp(projectorFromWorld) * Rigid(glm::dmat3(1.0), {middle.x, middle.y, middle.z});
+    PoseVector pose = projectorFromWorld; // its turn to the last digit
+    for (int i = 0; i < 3; ++i) pose[static_cast<std::size_t>(3 + i)] = fromMiddle.translation[i];
     // What was held is no better known: the mask of what was solved for stands in the covariance.
     LensMask moved{};
     for (std::size_t i = 0; i < moved.size(); ++i) moved[i] = projector.sigma[i] > 0.0;
     const auto rows = crosshairJacobian(projector.lens, moved, projector.size, pose, from);
     const Eigen::Matrix2d pixels = rows * covariance * rows.transpose();
-    const double depth = way[2] + pose[5];
+    const double depth = (fromMiddle * glm::dvec3(from.x, from.y, from.z)).z;
     const Eigen::Vector2d axes =
         Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>(pixels).eigenvalues().cwiseMax(0.0).cwiseSqrt();
     // 95 % of a normal distribution in the plane: 1.96 standard deviations where it is a line, 2.45 where it is round;

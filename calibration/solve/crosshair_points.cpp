@@ -8,7 +8,6 @@
 
 #include <Eigen/Dense>
 #include <glm/geometric.hpp>
-#include <opencv2/calib3d.hpp>
 
 #include "calibration/solve/crosshair_calibration.h"
 #include "core/base/error.h"
@@ -118,13 +117,7 @@ private:
 /// A projector as many are, that looks at the device's middle; for the choice alone.
 PoseVector poseLookingAt(const glm::dvec3& from, const glm::dvec3& middle) {
     const glm::dmat4 matrix = cameraLookingAt(from, middle, {kUsualWidth, kUsualHeight}, 1.0).cameraFromWorld;
-    cv::Matx33d turn;
-    for (int row = 0; row < 3; ++row)
-        for (int column = 0; column < 3; ++column) turn(row, column) = matrix[column][row];
-    cv::Vec3d axis;
-    cv::Rodrigues(turn, axis);
-    const glm::dvec3 way = matrix * glm::dvec4(middle, 1.0);
-    return {axis[0], axis[1], axis[2], way.x, way.y, way.z};
+    return (Rigid(matrix) * Rigid(glm::dmat3(1.0), middle)).log();
 }
 
 /// Chooses the corners whose crosshairs leave the light of no corner uncertain.

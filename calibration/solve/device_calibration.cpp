@@ -10,9 +10,10 @@
 #include <utility>
 
 #include <Eigen/Dense>
-#include <ceres/rotation.h>
 #include <embree3/rtcore.h>
 #include <glm/geometric.hpp>
+#include <glm/gtc/quaternion.hpp>
+#include <glm/matrix.hpp>
 #include <opencv2/calib3d.hpp>
 
 namespace lumorph {
@@ -140,10 +141,7 @@ cv::Point2d steadyMiddle(const std::vector<cv::Point2d>& points) {
     return count > 0.0 ? (1.0 / count) * sum : centre;
 }
 
-glm::dvec3 placeOf(const PoseVector& fromWorld) {
-    const PoseVector back = inverted(fromWorld);
-    return {back[3], back[4], back[5]};
-}
+glm::dvec3 placeOf(const PoseVector& fromWorld) { return Rigid::exp(fromWorld).inverse().translation; }
 
 /// The other pose by which points that lie nearly in a plane look much the same from afar: its tilt is turned over.
 PoseVector turnedOver(const PoseVector& pose, const std::vector<cv::Point3d>& points) {
@@ -153,33 +151,29 @@ PoseVector turnedOver(const PoseVector& pose, const std::vector<cv::Point3d>& po
     for (const cv::Point3d& p : points) middle += place(p) / static_cast<double>(points.size());
     for (const cv::Point3d& p : points) spread += (place(p) - middle) * (place(p) - middle).transpose();
     const Eigen::Vector3d normal = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(spread).eigenvectors().col(0);
-    Eigen::Matrix3d turn;
-    ceres::AngleAxisToRotationMatrix(pose.data(), turn.data()); // column after column, as Eigen has it
-    const Eigen::Vector3d seen = turn * middle + Eigen::Vector3d(pose[3], pose[4], pose[5]);
-    const Eigen::Vector3d sight = seen.normalized();
-    const Eigen::Matrix3d other = (Eigen::Matrix3d::Identity() - 2.0 * sight * sight.transpose()) * turn *
-                                  (Eigen::Matrix3d::Identity() - 2.0 * normal * normal.transpose());
-    const Eigen::Vector3d way = seen - other * middle;
-    PoseVector result;
-    ceres::RotationMatrixToAngleAxis(other.data(), result.data());
-    for (int i = 0; i < 3; ++i) result[3 + static_cast<std::size_t>(i)] = way[i];
-    return result;
+    const auto turnedRound = [](const glm::dvec3& axis) {
+        return glm::dmat3(1.0) - 2.0 * glm::outerProduct(axis, axis);
+    };
+    const glm::dvec3 centre(middle.x(), middle.y(), middle.z());
+    const Rigid given = Rigid::exp(pose);
+    const glm::dvec3 seen = given * centre;
+    const glm::dmat3 other =
+        turnedRound(glm::normalize(seen)) * given.rotation * turnedRound({normal.x(), normal.y(), normal.z()});
+    return Rigid(other, seen - other * centre).log();
 }
 
 /// A rough pose, turned so that it looks where the points' middle was seen.
 PoseVector aimed(const PoseVector& pose, const Lens& lens, const PointMatches& matches) {
-    Eigen::Vector3d looks = Eigen::Vector3d::Zero(), shall = Eigen::Vector3d::Zero();
+    glm::dvec3 looks(0.0), shall(0.0);
+    const Rigid given = Rigid::exp(pose);
     for (std::size_t i = 0; i < matches.points.size(); ++i) {
-        const double point[3] = {matches.points[i].x, matches.points[i].y, matches.points[i].z};
-        Eigen::Vector3d at;
-        ceres::AngleAxisRotatePoint(pose.data(), point, at.data());
-        looks += (at + Eigen::Vector3d(pose[3], pose[4], pose[5])).normalized();
+        const cv::Point3d& point = matches.points[i];
+        looks += glm::normalize(given * glm::dvec3(point.x, point.y, point.z));
         const auto way = directionOfPixel(lens, matches.pixels[i].x, matches.pixels[i].y);
-        shall += Eigen::Vector3d(way[0], way[1], 1.0).normalized();
+        shall += glm::normalize(glm::dvec3(way[0], way[1], 1.0));
     }
-    const Eigen::AngleAxisd turn(Eigen::Quaterniond::FromTwoVectors(looks, shall));
-    const Eigen::Vector3d axis = turn.angle() * turn.axis();
-    return composed({axis.x(), axis.y(), axis.z(), 0.0, 0.0, 0.0}, pose);
+    const glm::dquat turn(glm::normalize(looks), glm::normalize(shall)); // the shortest between both
+    return (Rigid(glm::mat3_cast(turn), glm::dvec3(0.0)) * given).log();
 }
 
 class DeviceSolver {
@@ -471,12 +465,8 @@ private:
 
     /// Where a camera looks with this pixel; unit length, the world's frame.
     static glm::dvec3 rayOf(const InstallationState::Device& camera, const cv::Point2d& pixel) {
-        const double back[3] = {-camera.fromWorld[0], -camera.fromWorld[1], -camera.fromWorld[2]};
         const auto direction = directionOfPixel(camera.lens, pixel.x, pixel.y);
-        const double way[3] = {direction[0], direction[1], 1.0};
-        double ray[3];
-        ceres::AngleAxisRotatePoint(back, way, ray);
-        return glm::normalize(glm::dvec3(ray[0], ray[1], ray[2]));
+        return glm::normalize(glm::dvec3(direction[0], direction[1], 1.0) * Rigid::exp(camera.fromWorld).rotation);
     }
 
     /// Some of these cells, spread evenly over all, where the camera's ray meets the device. Returns how many were
@@ -486,6 +476,7 @@ private:
         const auto& camera = state_.cameras[c];
         const glm::dvec3 from = placeOf(camera.fromWorld);
         const std::size_t used = std::min(cells.size(), most);
+        std::vector<SeenLight> found;
         for (std::size_t i = 0; i < used; ++i) {
             const LightCell& cell = cells[i * cells.size() / used];
             const DeviceSurface& surface = surfaces_[cell.shot];
@@ -499,11 +490,13 @@ private:
             SeenLight seen;
             seen.camera = static_cast<int>(c);
             seen.projector = static_cast<int>(p);
-            seen.normal = {normal.x, normal.y, normal.z};
-            seen.distance = glm::dot(normal, surface.middle(face));
+            seen.plane = {{normal.x, normal.y, normal.z}, glm::dot(normal, surface.middle(face))};
             seen.pixels = cell.pixels;
-            if (errorOf(seen, state_)) into.lights.push_back(seen);
+            found.push_back(seen);
         }
+        const auto errors = errorsOf(found, state_);
+        for (std::size_t i = 0; i < found.size(); ++i)
+            if (errors[i]) into.lights.push_back(found[i]);
         return used;
     }
 
@@ -512,9 +505,8 @@ private:
     [[nodiscard]] double explainedShare(std::size_t c, std::size_t p) const {
         const auto explained = [this](const InstallationObservations& seen) {
             double sum = 0.0;
-            for (const SeenLight& light : seen.lights)
-                if (const auto error = errorOf(light, state_))
-                    sum += std::max(0.0, 1.0 - cv::norm(*error) / kExplained);
+            for (const auto& error : errorsOf(seen.lights, state_))
+                if (error) sum += std::max(0.0, 1.0 - cv::norm(*error) / kExplained);
             return sum;
         };
         InstallationObservations moved, any;
@@ -557,8 +549,8 @@ private:
     /// Robust standard deviation of a coordinate, over light that has an error.
     [[nodiscard]] double noiseOf(const InstallationObservations& seen) const {
         std::vector<double> lengths;
-        for (const SeenLight& light : seen.lights)
-            if (const auto error = errorOf(light, state_)) lengths.push_back(cv::norm(*error));
+        for (const auto& error : errorsOf(seen.lights, state_))
+            if (error) lengths.push_back(cv::norm(*error));
         if (lengths.empty()) return std::numeric_limits<double>::infinity();
         const auto middle = lengths.begin() + static_cast<std::ptrdiff_t>(lengths.size() / 2);
         std::ranges::nth_element(lengths, middle);
@@ -640,8 +632,8 @@ private:
 
     void report() {
         std::size_t fits = 0;
-        for (const SeenLight& light : seen_.lights)
-            if (const auto error = errorOf(light, state_)) fits += cv::norm(*error) < 5.0 * noise_.projector;
+        for (const auto& error : errorsOf(seen_.lights, state_))
+            if (error) fits += cv::norm(*error) < 5.0 * noise_.projector;
         result_.rms = noise_.projector;
         result_.onDevice = static_cast<double>(fits) / std::max<double>(1.0, static_cast<double>(seen_.lights.size()));
         if (result_.rms > kDeviceFits || result_.onDevice < kFitShare) throw misfit(result_.rms);

@@ -70,8 +70,8 @@ WorldPose worldPoseFrom(const ProcamCalibration& calibration, const BoardPoints&
 std::vector<Eigen::Matrix2d> lightUncertainty(const ProcamCalibration& calibration, const Eigen::MatrixXd& covariance,
                                               const WorldPose& world, const std::vector<LitPlace>& places) {
     const LightCovariance known = lightCovariance(covariance, world);
-    const PoseMatrix camera(world.cameraFromWorld.data());
-    const PoseMatrix rig(calibration.projectorFromCamera.data());
+    const PoseMatrix camera(world.cameraFromWorld);
+    const PoseMatrix rig(calibration.projectorFromCamera);
     std::vector<Eigen::Matrix2d> all;
     for (const LitPlace& place : places) {
         all.emplace_back(Eigen::Matrix2d::Identity() * std::numeric_limits<double>::infinity());
@@ -118,7 +118,7 @@ std::vector<Eigen::Matrix2d> cameraUncertainty(const ProcamCalibration& calibrat
         Eigen::MatrixXd slopes = Eigen::MatrixXd::Zero(2, calibration.covariance.cols());
         slopes.leftCols<kLensParameters>() = seen.byLens;
         for (std::size_t v = 0; v < state.cameraFromBoard.size(); ++v) {
-            const PoseMatrix pose(state.cameraFromBoard[v].data());
+            const PoseMatrix pose(state.cameraFromBoard[v]);
             const Eigen::Vector3d onBoard = pose.rotation.transpose() * (inCamera - pose.shift);
             const auto place = static_cast<Eigen::Index>(kPosePlace + 6 * v);
             slopes.middleCols<3>(place) = -seen.byPoint * pose.rotation * crossOf(onBoard) * pose.turn / count;

@@ -7,6 +7,7 @@
 
 #include <Eigen/Core>
 
+#include "calibration/solve/projection.h"
 #include "core/base/error.h"
 
 namespace lumorph {
@@ -33,27 +34,6 @@ void fitPose(const std::vector<ViewObservations>& views, int view, BundleOptions
     refine(views, {view}, options, state);
 }
 
-/// Numbers of a state as one vector, in the order of `covarianceOf`.
-Eigen::Matrix<double, 24, 1> vectorOf(const BundleState& state) {
-    Eigen::Matrix<double, 24, 1> all;
-    for (int i = 0; i < kLensParameters; ++i) {
-        all[i] = state.camera[static_cast<std::size_t>(i)];
-        all[kLensParameters + i] = state.projector[static_cast<std::size_t>(i)];
-    }
-    for (int i = 0; i < 6; ++i) all[2 * kLensParameters + i] = state.projectorFromCamera[static_cast<std::size_t>(i)];
-    return all;
-}
-
-BundleState stateOf(const Eigen::Matrix<double, 24, 1>& all) {
-    BundleState state;
-    for (int i = 0; i < kLensParameters; ++i) {
-        state.camera[static_cast<std::size_t>(i)] = all[i];
-        state.projector[static_cast<std::size_t>(i)] = all[kLensParameters + i];
-    }
-    for (int i = 0; i < 6; ++i) state.projectorFromCamera[static_cast<std::size_t>(i)] = all[2 * kLensParameters + i];
-    return state;
-}
-
 /// A camera pixel and how deep it sees.
 struct DeepPixel {
     cv::Point2d pixel;
@@ -66,24 +46,21 @@ Eigen::Vector2d lightOf(const DeepPixel& seen, const BundleState& state) {
     return {pixel.x, pixel.y};
 }
 
-/// Mean variance of a pixel's light, both coordinates together.
+/// Mean variance of a pixel's light, both coordinates together, by lenses and rig in the order of `covarianceOf`.
 double varianceOf(const std::vector<DeepPixel>& pixels, const BundleState& state,
-                  const Eigen::Matrix<double, 24, 24>& covariance) {
-    const Eigen::Matrix<double, 24, 1> here = vectorOf(state);
-    Eigen::MatrixXd slopes(2 * static_cast<Eigen::Index>(pixels.size()), 24);
-    for (int p = 0; p < 24; ++p) {
-        const double step = std::max(1e-3 * std::sqrt(covariance(p, p)), 1e-9 * std::max(1.0, std::abs(here[p])));
-        Eigen::Matrix<double, 24, 1> up = here;
-        Eigen::Matrix<double, 24, 1> down = here;
-        up[p] += step;
-        down[p] -= step;
-        const BundleState above = stateOf(up);
-        const BundleState below = stateOf(down);
-        for (std::size_t i = 0; i < pixels.size(); ++i)
-            slopes.block<2, 1>(2 * static_cast<Eigen::Index>(i), p) =
-                (lightOf(pixels[i], above) - lightOf(pixels[i], below)) / (2.0 * step);
+                  const Eigen::Matrix<double, kBoardPlace, kBoardPlace>& covariance) {
+    const PoseMatrix rig(state.projectorFromCamera);
+    double sum = 0.0;
+    for (const auto& [pixel, depth] : pixels) {
+        const auto [x, y] = directionOfPixel(state.camera, pixel.x, pixel.y);
+        const Eigen::Vector3d inCamera = depth * Eigen::Vector3d(x, y, 1.0);
+        const Projected light = project(state.projector, rig * inCamera);
+        const PixelByPoint byPoint = light.byPoint * rig.rotation;
+        Eigen::Matrix<double, 2, kBoardPlace> slopes;
+        slopes << depth * byPoint.leftCols<2>() * directionByLens(state.camera, pixel.x, pixel.y, x, y), light.byLens,
+            -byPoint * crossOf(inCamera) * rig.turn, light.byPoint;
+        sum += (slopes * covariance).cwiseProduct(slopes).sum();
     }
-    const double sum = (slopes * covariance).cwiseProduct(slopes).sum();
     return sum / static_cast<double>(pixels.size());
 }
 
@@ -173,7 +150,8 @@ HalvesComparison compareHalves(const std::vector<ViewObservations>& views, const
                 for (const int i : {kAspect, kK1, kK2, kP1, kP2, kK3}) (*mask)[static_cast<std::size_t>(i)] = false;
         BundleState solved = state;
         refine(views, half, free, solved);
-        variance += varianceOf(pixels, solved, covarianceOf(views, half, free, solved).matrix.topLeftCorner<24, 24>());
+        variance += varianceOf(
+            pixels, solved, covarianceOf(views, half, free, solved).matrix.topLeftCorner<kBoardPlace, kBoardPlace>());
         halves.push_back(solved);
     }
     double sum = 0.0;

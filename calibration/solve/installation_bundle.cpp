@@ -4,330 +4,464 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <memory>
+#include <string>
+#include <type_traits>
 #include <utility>
 
 #include <Eigen/Eigenvalues>
 #include <ceres/ceres.h>
-#include <ceres/rotation.h>
+#include <ceres/normal_prior.h>
+
+#include "calibration/solve/sight.h"
 
 namespace lumorph {
 
 namespace {
 
-constexpr double kNearestPoint = 1e-9;      // before a lens
-constexpr double kHidden = 1e-14;           // of the largest eigenvalue: a direction that nothing tells of
-constexpr double kLeastInformation = 1e-30; // of a parameter
-constexpr double kMostMissing = 0.1;        // of all that was seen
+constexpr double kUnseen = 1e-14;   // of the largest eigenvalue: a direction that the data do not tell
+constexpr double kMissed = 1e3;     // standard deviations: the error of a point that its ray misses
+constexpr double kMostMissed = 0.1; // of what a camera has on a body: with more the state itself is impossible
+constexpr int kSightBlocks[] = {kLensParameters, 6, 6, kBoardParameters, 3, kLensParameters, 6};
 
-template <typename T> void poseForward(const T* pose, const T* point, T* out) {
-    ceres::AngleAxisRotatePoint(pose, point, out);
-    for (int i = 0; i < 3; ++i) out[i] += pose[3 + i];
+std::size_t at(int index) { return static_cast<std::size_t>(index); }
+
+template <typename Numbers> Numbers numbersAt(const double* block) {
+    Numbers numbers;
+    std::copy_n(block, numbers.size(), numbers.begin());
+    return numbers;
 }
 
-template <typename T> void turnBack(const T* pose, const T* way, T* out) {
-    const T back[3] = {-pose[0], -pose[1], -pose[2]};
-    ceres::AngleAxisRotatePoint(back, way, out);
-}
-
-template <typename T> T dotOf(const T* a, const T* b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
-
-/// Reflects a place, or with `place` 0 a direction, at the plane whose nearest point to the origin is `mirror`.
-template <typename T> void reflect(const T* mirror, double place, T* what) {
-    const T square = dotOf(mirror, mirror);
-    const T off = T(2.0) * (dotOf(mirror, what) / square - T(place));
-    for (int i = 0; i < 3; ++i) what[i] -= off * mirror[i];
-}
-
-/// Of a known point in a camera.
-struct PointError {
-    SeenPoint seen;
-    double weight = 1.0;
-
-    template <typename T>
-    bool operator()(const T* lens, const T* camera, const T* body, const T* mirror, T* error) const {
-        const T point[3] = {T(seen.point.x), T(seen.point.y), T(seen.point.z)};
-        T inWorld[3], inCamera[3], pixel[2];
-        poseForward(body, point, inWorld);
-        if (seen.mirrored) reflect(mirror, 1.0, inWorld);
-        poseForward(camera, inWorld, inCamera);
-        if (inCamera[2] < T(kNearestPoint)) return false;
-        projectPoint(lens, inCamera, pixel);
-        error[0] = T(weight) * (pixel[0] - T(seen.pixel.x));
-        error[1] = T(weight) * (pixel[1] - T(seen.pixel.y));
-        return ceres::isfinite(error[0]) && ceres::isfinite(error[1]);
+/// A loss of squared errors in standard deviations: Huber's, or Cauchy's for light, of which more is astray.
+class RobustLoss {
+public:
+    RobustLoss(bool isCauchy, double bend) : isCauchy_(isCauchy), bend_(bend * bend) {
+        // Both coordinates of normal noise together, s is exponential with mean 2, and the mean of 1 / (1 + s / b) is
+        // b/2 exp(b/2) E1(b/2), with E1(x) = -Ei(-x).
+        if (isCauchy) mean_ = -0.5 * bend_ * std::exp(0.5 * bend_) * std::expint(-0.5 * bend_);
     }
-};
 
-/// Of light: the camera's ray, by way of the mirror where it is so, cut with the body's plane and put into the
-/// projector.
-struct LightError {
-    SeenLight seen;
-    double weight = 1.0;
-
-    template <typename T>
-    bool operator()(const T* lens, const T* camera, const T* body, const T* projectorLens, const T* projector,
-                    const T* mirror, T* error) const {
-        T way[3], ray[3], minus[3], from[3];
-        directionOfPixel<T>(lens, seen.pixels.camera.x, seen.pixels.camera.y, way[0], way[1]);
-        way[2] = T(1.0);
-        turnBack(camera, way, ray);
-        for (int i = 0; i < 3; ++i) minus[i] = -camera[3 + i];
-        turnBack(camera, minus, from);
-        if (seen.mirrored) {
-            reflect(mirror, 1.0, from);
-            reflect(mirror, 0.0, ray);
+    /// Makes the half square of an error its loss: error and slopes, scaled.
+    void apply(Eigen::Vector2d& error, SightSlopes* slopes) const {
+        const double s = error.squaredNorm();
+        if (s < 1e-12) return;
+        const double value = valueOf(s);
+        const double scale = std::sqrt(value / s);
+        if (slopes) {
+            const double bend = (slopeOf(s) * s - value) / (s * s) / scale; // twice the derivative of `scale` by s
+            *slopes = scale * *slopes + (bend * error) * (error.transpose() * *slopes);
         }
-        const T normal[3] = {T(seen.normal[0]), T(seen.normal[1]), T(seen.normal[2])};
-        T n[3], inProjector[3], pixel[2], place[3];
-        ceres::AngleAxisRotatePoint(body, normal, n);
-        const T along = (T(seen.distance) + dotOf(n, body + 3) - dotOf(n, from)) / dotOf(n, ray);
-        if (!(along > T(kNearestPoint))) return false;
-        for (int i = 0; i < 3; ++i) place[i] = from[i] + along * ray[i];
-        poseForward(projector, place, inProjector);
-        if (inProjector[2] < T(kNearestPoint)) return false;
-        projectPoint(projectorLens, inProjector, pixel);
-        error[0] = T(weight) * (pixel[0] - T(seen.pixels.projector.x));
-        error[1] = T(weight) * (pixel[1] - T(seen.pixels.projector.y));
-        return ceres::isfinite(error[0]) && ceres::isfinite(error[1]);
+        error *= scale;
     }
+
+    /// What the loss lets an error count, in units of what errors of normal noise count in the mean: so noise alone
+    /// counts in full, and what is far off next to nothing. Huber's bend lies where that mean is nearly 1.
+    [[nodiscard]] double weightOf(const Eigen::Vector2d& error) const { return slopeOf(error.squaredNorm()) / mean_; }
+
+private:
+    [[nodiscard]] double valueOf(double s) const {
+        if (isCauchy_) return bend_ * std::log1p(s / bend_);
+        return s <= bend_ ? s : 2.0 * std::sqrt(bend_ * s) - bend_;
+    }
+    [[nodiscard]] double slopeOf(double s) const {
+        if (isCauchy_) return 1.0 / (1.0 + s / bend_);
+        return s <= bend_ ? 1.0 : std::sqrt(bend_ / s);
+    }
+
+    bool isCauchy_;
+    double bend_, mean_ = 1.0;
 };
 
-/// How far a lens lies from what was known of it.
-struct KnownError {
-    InstallationNoise::Known known;
+int projectorOf(const SeenPoint&) { return -1; }
+int projectorOf(const SeenLight& seen) { return seen.projector; }
 
-    template <typename T> bool operator()(const T* lens, T* error) const {
-        for (int i = 0; i < kLensParameters; ++i) {
-            const auto at = static_cast<std::size_t>(i);
-            error[i] = known.sigma[at] > 0.0 ? (lens[i] - T(known.lens[at])) / T(known.sigma[at]) : T(0.0);
+/// What one camera saw on one body, of it or of one projector's light.
+template <typename Seen> using SightGroup = std::vector<const Seen*>;
+
+template <typename Seen> std::vector<SightGroup<Seen>> groupsOf(const std::vector<Seen>& all) {
+    std::map<std::array<int, 3>, SightGroup<Seen>> groups;
+    for (const Seen& seen : all) groups[{seen.body, seen.camera, projectorOf(seen)}].push_back(&seen);
+    std::vector<SightGroup<Seen>> list;
+    for (auto& [key, group] : groups) list.push_back(std::move(group));
+    return list;
+}
+
+/// Calls `take` with each block of a state's numbers, in the order of `InstallationPlaces`.
+template <typename State, typename Take> void forEachBlock(State& state, const Take& take) {
+    for (auto* devices : {&state.cameras, &state.projectors})
+        for (auto& device : *devices) {
+            take(device.lens);
+            take(device.fromWorld);
+        }
+    take(state.board.terms);
+    take(state.mirror);
+    for (auto& body : state.worldFromBody) take(body);
+}
+
+std::vector<double> numbersOf(const InstallationState& state) {
+    std::vector<double> all;
+    forEachBlock(state, [&](const auto& block) { all.insert(all.end(), block.begin(), block.end()); });
+    return all;
+}
+
+void takeNumbers(const std::vector<double>& numbers, InstallationState& state) {
+    auto next = numbers.begin();
+    forEachBlock(state, [&](auto& block) {
+        std::copy_n(next, block.size(), block.begin());
+        next += static_cast<std::ptrdiff_t>(block.size());
+    });
+}
+
+/// Of all numbers, those that a group's errors depend on, block by block as in `SightColumn`.
+template <typename Seen>
+std::vector<double*> blocksOf(const Seen& seen, const InstallationPlaces& places, std::vector<double>& numbers) {
+    std::vector<int> starts = {places.camera(at(seen.camera)), places.camera(at(seen.camera)) + kLensParameters,
+                               places.body(at(seen.body)), places.board, places.mirror};
+    if constexpr (std::is_same_v<Seen, SeenLight>)
+        for (const int after : {0, kLensParameters}) starts.push_back(places.projector(at(seen.projector)) + after);
+    std::vector<double*> blocks;
+    for (const int start : starts) blocks.push_back(numbers.data() + start);
+    return blocks;
+}
+
+/// Places of what may move.
+std::vector<int> freePlaces(const InstallationFree& free, const InstallationState& state) {
+    const InstallationPlaces all(state);
+    std::vector<int> places;
+    const auto add = [&places](int first, const auto& mask) {
+        for (std::size_t i = 0; i < mask.size(); ++i)
+            if (mask[i]) places.push_back(first + static_cast<int>(i));
+    };
+    const auto addDevice = [&](int first, const InstallationFree::Device& device) {
+        add(first, device.lens);
+        add(first + kLensParameters, std::vector<bool>(6, device.pose));
+    };
+    for (std::size_t i = 0; i < free.cameras.size(); ++i) addDevice(all.camera(i), free.cameras[i]);
+    for (std::size_t i = 0; i < free.projectors.size(); ++i) addDevice(all.projector(i), free.projectors[i]);
+    add(all.board, free.board);
+    add(all.mirror, std::vector<bool>(3, free.mirror));
+    for (std::size_t i = 0; i < free.bodies.size(); ++i) add(all.body(i), std::vector<bool>(6, free.bodies[i]));
+    return places;
+}
+
+template <typename Seen> Sight sightAt(double const* const* blocks, const BoardShape& frame) {
+    constexpr bool kIsLight = std::is_same_v<Seen, SeenLight>;
+    BoardShape board = frame;
+    std::copy_n(blocks[3], kBoardParameters, board.terms.begin());
+    return {numbersAt<Lens>(blocks[0]),
+            kIsLight ? numbersAt<Lens>(blocks[5]) : Lens{},
+            PoseMatrix(numbersAt<PoseVector>(blocks[1])),
+            PoseMatrix(numbersAt<PoseVector>(blocks[2])),
+            PoseMatrix(kIsLight ? numbersAt<PoseVector>(blocks[6]) : PoseVector{}),
+            board,
+            Eigen::Vector3d(blocks[4][0], blocks[4][1], blocks[4][2])};
+}
+
+/// All errors of a group in standard deviations, as one block: its rotations are worked out once.
+template <typename Seen> class GroupError : public ceres::CostFunction {
+public:
+    GroupError(const SightGroup<Seen>& group, const InstallationNoise& noise, const BoardShape& frame)
+        : group_(group), sigma_(kIsLight ? noise.projector : noise.camera), loss_(kIsLight, noise.robust),
+          frame_(frame) {
+        set_num_residuals(static_cast<int>(2 * group.size()));
+        for (std::size_t i = 0; i < kBlocks; ++i) mutable_parameter_block_sizes()->push_back(kSightBlocks[i]);
+    }
+
+    bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override {
+        int row = 0;
+        const auto byLoss = [this](Eigen::Vector2d& error, SightSlopes* slopes) { loss_.apply(error, slopes); };
+        return forEach(parameters, byLoss, jacobians != nullptr,
+                       [&](const Eigen::Vector2d& error, const SightSlopes& slopes) {
+                           residuals[row] = error.x();
+                           residuals[row + 1] = error.y();
+                           if (jacobians) copy(slopes, row, jacobians);
+                           row += 2;
+                       });
+    }
+
+    void addNormal(double const* const* parameters, Counts counts, Eigen::MatrixXd& normal) const {
+        const auto scale = [&](Eigen::Vector2d& error, SightSlopes* slopes) {
+            if (counts == Counts::asLossLets) *slopes *= std::sqrt(loss_.weightOf(error));
+        };
+        forEach(parameters, scale, true, [&](const Eigen::Vector2d&, const SightSlopes& slopes) {
+            normal.noalias() += slopes.transpose() * slopes;
+        });
+    }
+
+private:
+    static constexpr bool kIsLight = std::is_same_v<Seen, SeenLight>;
+    static constexpr std::size_t kBlocks = kIsLight ? 7 : 5;
+
+    template <typename Scale, typename Take>
+    bool forEach(double const* const* parameters, const Scale& scale, bool wantSlopes, const Take& take) const {
+        const Sight sight = sightAt<Seen>(parameters, frame_);
+        Eigen::Vector2d error;
+        SightSlopes storage;
+        SightSlopes* slopes = wantSlopes ? &storage : nullptr;
+        std::size_t missed = 0;
+        for (const Seen* seen : group_) {
+            if (sight.error(*seen, error, slopes)) {
+                error /= sigma_;
+                if (slopes) *slopes /= sigma_;
+            } else { // a single one that cannot be there counts as one far off, which no small step mends
+                if (static_cast<double>(++missed) > kMostMissed * static_cast<double>(group_.size())) return false;
+                error = {kMissed, 0.0};
+                if (slopes) slopes->setZero();
+            }
+            scale(error, slopes);
+            if (seen->weight != 1.0) {
+                error *= std::sqrt(seen->weight);
+                if (slopes) *slopes *= std::sqrt(seen->weight);
+            }
+            take(error, storage);
         }
         return true;
     }
+
+    static void copy(const SightSlopes& slopes, int row, double** jacobians) {
+        int column = 0;
+        for (std::size_t block = 0; block < kBlocks; ++block) {
+            const int size = kSightBlocks[block];
+            if (jacobians[block])
+                for (int r = 0; r < 2; ++r)
+                    for (int c = 0; c < size; ++c) jacobians[block][(row + r) * size + c] = slopes(r, column + c);
+            column += size;
+        }
+    }
+
+    const SightGroup<Seen> group_;
+    const double sigma_;
+    const RobustLoss loss_;
+    const BoardShape frame_;
 };
 
-/// The problem around one state, whose numbers it moves.
+/// The problem around one state. Its numbers lie side by side, because Ceres orders blocks by their addresses: so the
+/// same observations give the same bits.
 class InstallationProblem {
 public:
     InstallationProblem(const InstallationObservations& observations, const InstallationFree& free,
-                        const InstallationNoise& noise, InstallationState& state)
-        : state_(state) {
-        addDevices(state.cameras, free.cameras, noise.cameras);
-        addDevices(state.projectors, free.projectors, noise.projectors);
-        for (std::size_t i = 0; i < state.worldFromBody.size(); ++i)
-            addPose(state.worldFromBody[i].data(), i < free.bodies.size() && free.bodies[i]);
-        problem_.AddParameterBlock(state.mirror.data(), 3);
-        if (!free.mirror) problem_.SetParameterBlockConstant(state.mirror.data());
-        addSeen(observations.points, [&](const SeenPoint& seen) { addPoint(seen, noise); });
-        addSeen(observations.lights, [&](const SeenLight& seen) { addLight(seen, noise); });
+                        const InstallationNoise& noise, const InstallationState& state)
+        : places_(state), numbers_(numbersOf(state)) {
+        addGroups(observations.points, noise, state.board);
+        addGroups(observations.lights, noise, state.board);
+        for (std::size_t i = 0; i < std::min(free.cameras.size(), noise.cameras.size()); ++i)
+            addKnown(noise.cameras[i], free.cameras[i].lens, places_.camera(i));
+        for (std::size_t i = 0; i < std::min(free.projectors.size(), noise.projectors.size()); ++i)
+            addKnown(noise.projectors[i], free.projectors[i].lens, places_.projector(i));
+        holdAllBut(freePlaces(free, state));
     }
 
-    double solve(int steps) {
+    /// Returns the cost.
+    double solve(int steps, InstallationState& into) {
         ceres::Solver::Options how;
         how.linear_solver_type = ceres::DENSE_NORMAL_CHOLESKY;
+        if (bodiesMove_) { // each error sees one body: those are eliminated first
+            how.linear_solver_type = ceres::DENSE_SCHUR;
+            how.linear_solver_ordering = std::make_shared<ceres::ParameterBlockOrdering>();
+            for (double* block : blocks()) how.linear_solver_ordering->AddElementToGroup(block, isBody(block) ? 0 : 1);
+        }
         how.max_num_iterations = steps;
         how.function_tolerance = 1e-9;
         how.logging_type = ceres::SILENT;
-        how.num_threads = 2;
+        how.num_threads = 1;
         ceres::Solver::Summary summary;
         ceres::Solve(how, &problem_, &summary);
+        takeNumbers(numbers_, into);
         return summary.termination_type == ceres::FAILURE ? std::numeric_limits<double>::infinity()
                                                           : summary.final_cost;
     }
 
-    /// Standard deviations, each where its number stands in `into`, a copy of the state.
-    void sigmas(InstallationState& into) {
-        std::vector<double*> blocks;
-        std::vector<double*> places; // of the columns
-        const auto addBlock = [&](double* block, double* place, int size, const auto& isFree) {
-            if (problem_.IsParameterBlockConstant(block)) return;
-            blocks.push_back(block);
-            for (int i = 0; i < size; ++i)
-                if (isFree(i)) places.push_back(place + i);
-        };
-        const auto all = [](int) { return true; };
-        const auto addAll = [&](auto& devices, auto& outs) {
-            for (std::size_t i = 0; i < devices.size(); ++i) {
-                const LensMask& mask = masks_.at(devices[i].lens.data());
-                addBlock(devices[i].lens.data(), outs[i].lens.data(), kLensParameters,
-                         [&](int k) { return mask[static_cast<std::size_t>(k)]; });
-                addBlock(devices[i].fromWorld.data(), outs[i].fromWorld.data(), 6, all);
-            }
-        };
-        addAll(state_.cameras, into.cameras);
-        addAll(state_.projectors, into.projectors);
-        for (std::size_t i = 0; i < state_.worldFromBody.size(); ++i)
-            addBlock(state_.worldFromBody[i].data(), into.worldFromBody[i].data(), 6, all);
-        addBlock(state_.mirror.data(), into.mirror.data(), 3, all);
-        if (blocks.empty()) return;
-        const Eigen::VectorXd variances = variancesOf(blocks);
-        for (std::size_t i = 0; i < places.size(); ++i)
-            *places[i] = std::sqrt(std::max(0.0, variances[static_cast<Eigen::Index>(i)]));
+private:
+    [[nodiscard]] std::vector<double*> blocks() const {
+        std::vector<double*> all;
+        problem_.GetParameterBlocks(&all);
+        return all;
+    }
+    [[nodiscard]] bool isBody(const double* block) const { return block - numbers_.data() >= places_.bodies; }
+
+    template <typename Seen>
+    void addGroups(const std::vector<Seen>& all, const InstallationNoise& noise, const BoardShape& frame) {
+        for (const SightGroup<Seen>& group : groupsOf(all))
+            problem_.AddResidualBlock(new GroupError<Seen>(group, noise, frame), nullptr,
+                                      blocksOf(*group.front(), places_, numbers_));
     }
 
-private:
-    void addDevices(std::vector<InstallationState::Device>& devices, const std::vector<InstallationFree::Device>& free,
-                    const std::vector<InstallationNoise::Known>& known) {
-        for (std::size_t i = 0; i < devices.size(); ++i) {
-            const InstallationFree::Device what = i < free.size() ? free[i] : InstallationFree::Device{};
-            double* lens = devices[i].lens.data();
-            masks_[lens] = what.lens;
+    void addKnown(const InstallationNoise::Known& known, const LensMask& free, int place) {
+        if (std::ranges::none_of(free, [](bool moves) { return moves; })) return;
+        ceres::Matrix scale = ceres::Matrix::Zero(kLensParameters, kLensParameters);
+        for (int i = 0; i < kLensParameters; ++i)
+            if (known.sigma[at(i)] > 0.0) scale(i, i) = 1.0 / known.sigma[at(i)];
+        const Eigen::Map<const ceres::Vector> middle(known.lens.data(), kLensParameters);
+        problem_.AddResidualBlock(new ceres::NormalPrior(scale, middle), nullptr, numbers_.data() + place);
+    }
+
+    void holdAllBut(const std::vector<int>& free) {
+        std::vector<bool> moves(numbers_.size());
+        for (const int place : free) moves[at(place)] = true;
+        for (double* block : blocks()) {
+            const auto place = block - numbers_.data();
+            const int size = problem_.ParameterBlockSize(block);
             std::vector<int> held;
-            for (int k = 0; k < kLensParameters; ++k)
-                if (!what.lens[static_cast<std::size_t>(k)]) held.push_back(k);
-            problem_.AddParameterBlock(lens, kLensParameters);
-            if (held.size() == kLensParameters)
-                problem_.SetParameterBlockConstant(lens);
+            for (int i = 0; i < size; ++i)
+                if (!moves[static_cast<std::size_t>(place + i)]) held.push_back(i);
+            if (static_cast<int>(held.size()) == size)
+                problem_.SetParameterBlockConstant(block);
             else if (!held.empty())
-                problem_.SetManifold(lens, new ceres::SubsetManifold(kLensParameters, held));
-            if (i < known.size() && held.size() < kLensParameters)
-                problem_.AddResidualBlock(new ceres::AutoDiffCostFunction<KnownError, kLensParameters, kLensParameters>(
-                                              new KnownError{known[i]}),
-                                          nullptr, lens);
-            addPose(devices[i].fromWorld.data(), what.pose);
+                problem_.SetManifold(block, new ceres::SubsetManifold(size, held));
+            bodiesMove_ = bodiesMove_ || (isBody(block) && held.empty());
         }
     }
 
-    /// Without single ones that cannot be there, such as light whose ray misses its plane: each would make the whole
-    /// impossible. Where they are many, so it is.
-    template <typename Seen, typename Add> void addSeen(const std::vector<Seen>& all, const Add& add) {
-        const auto isThere = [this](const Seen& seen) { return errorOf(seen, state_).has_value(); };
-        const auto missed = all.size() - static_cast<std::size_t>(std::ranges::count_if(all, isThere));
-        const bool isFew = static_cast<double>(missed) <= kMostMissing * static_cast<double>(all.size());
-        for (const Seen& seen : all)
-            if (missed == 0 || !isFew || isThere(seen)) add(seen);
-    }
-
-    void addPose(double* pose, bool free) {
-        problem_.AddParameterBlock(pose, 6);
-        if (!free) problem_.SetParameterBlockConstant(pose);
-    }
-
-    static std::size_t at(int index) { return static_cast<std::size_t>(index); }
-
-    void addPoint(const SeenPoint& seen, const InstallationNoise& noise) {
-        auto& camera = state_.cameras[at(seen.camera)];
-        problem_.AddResidualBlock(new ceres::AutoDiffCostFunction<PointError, 2, kLensParameters, 6, 6, 3>(
-                                      new PointError{seen, 1.0 / noise.camera}),
-                                  new ceres::HuberLoss(noise.robust), camera.lens.data(), camera.fromWorld.data(),
-                                  state_.worldFromBody[at(seen.body)].data(), state_.mirror.data());
-    }
-
-    void addLight(const SeenLight& seen, const InstallationNoise& noise) {
-        auto& camera = state_.cameras[at(seen.camera)];
-        auto& projector = state_.projectors[at(seen.projector)];
-        problem_.AddResidualBlock(
-            new ceres::AutoDiffCostFunction<LightError, 2, kLensParameters, 6, 6, kLensParameters, 6, 3>(
-                new LightError{seen, std::sqrt(seen.weight) / noise.projector}),
-            new ceres::CauchyLoss(noise.robust), camera.lens.data(), camera.fromWorld.data(),
-            state_.worldFromBody[at(seen.body)].data(), projector.lens.data(), projector.fromWorld.data(),
-            state_.mirror.data());
-    }
-
-    /// The diagonal of the inverse of the normal matrix, whose parameters have very different units.
-    Eigen::VectorXd variancesOf(const std::vector<double*>& blocks) {
-        ceres::Problem::EvaluateOptions how;
-        how.parameter_blocks = blocks;
-        ceres::CRSMatrix jacobian;
-        problem_.Evaluate(how, nullptr, nullptr, nullptr, &jacobian);
-        Eigen::MatrixXd normal = Eigen::MatrixXd::Zero(jacobian.num_cols, jacobian.num_cols);
-        for (int row = 0; row < jacobian.num_rows; ++row)
-            for (int i = jacobian.rows[at(row)]; i < jacobian.rows[at(row + 1)]; ++i)
-                for (int k = jacobian.rows[at(row)]; k < jacobian.rows[at(row + 1)]; ++k)
-                    normal(jacobian.cols[at(i)], jacobian.cols[at(k)]) +=
-                        jacobian.values[at(i)] * jacobian.values[at(k)];
-        const Eigen::VectorXd scale = normal.diagonal().cwiseMax(kLeastInformation).cwiseSqrt().cwiseInverse();
-        const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solved(scale.asDiagonal() * normal * scale.asDiagonal());
-        const Eigen::VectorXd values = solved.eigenvalues().cwiseMax(kHidden * solved.eigenvalues().maxCoeff());
-        const Eigen::MatrixXd half =
-            scale.asDiagonal() * solved.eigenvectors() * values.cwiseInverse().cwiseSqrt().asDiagonal();
-        return half.rowwise().squaredNorm();
-    }
-
-    InstallationState& state_;
-    std::map<const double*, LensMask> masks_;
+    const InstallationPlaces places_;
+    std::vector<double> numbers_; ///< of the state
     ceres::Problem problem_;
+    bool bodiesMove_ = false;
 };
 
-template <std::size_t Size> void fillZero(std::array<double, Size>& numbers) { numbers.fill(0.0); }
+/// Places in a normal matrix of all of a group's columns.
+template <typename Seen> std::vector<int> placesOf(const Seen& seen, const InstallationPlaces& all) {
+    std::vector<int> places;
+    const auto add = [&places](int first, int count) {
+        for (int i = 0; i < count; ++i) places.push_back(first + i);
+    };
+    add(all.camera(at(seen.camera)), InstallationPlaces::kOfDevice);
+    add(all.body(at(seen.body)), 6);
+    add(all.board, kBoardParameters);
+    add(all.mirror, 3);
+    // Of a point the last columns are zero, wherever they are added.
+    add(std::is_same_v<Seen, SeenLight> ? all.projector(at(std::max(0, projectorOf(seen)))) : 0,
+        InstallationPlaces::kOfDevice);
+    return places;
+}
+
+template <typename Seen>
+Eigen::MatrixXd normalOf(const std::vector<Seen>& observations, const InstallationNoise& noise,
+                         const InstallationState& state, Counts counts) {
+    const InstallationPlaces places(state);
+    std::vector<double> numbers = numbersOf(state);
+    Eigen::MatrixXd normal = Eigen::MatrixXd::Zero(places.count, places.count);
+    for (const SightGroup<Seen>& group : groupsOf(observations)) {
+        const std::vector<double*> blocks = blocksOf(*group.front(), places, numbers);
+        Eigen::MatrixXd own = Eigen::MatrixXd::Zero(kSightColumns, kSightColumns);
+        GroupError<Seen>(group, noise, state.board).addNormal(blocks.data(), counts, own);
+        const std::vector<int> columns = placesOf(*group.front(), places);
+        normal(columns, columns) += own;
+    }
+    return normal;
+}
+
+template <typename Seen>
+std::vector<std::optional<cv::Point2d>> errorsOfAll(const std::vector<Seen>& all, const InstallationState& state) {
+    const InstallationPlaces places(state);
+    std::vector<double> numbers = numbersOf(state);
+    std::vector<std::optional<cv::Point2d>> errors;
+    std::vector<double*> before;
+    std::optional<Sight> sight;
+    for (const Seen& seen : all) {
+        if (const std::vector<double*> blocks = blocksOf(seen, places, numbers); blocks != before) {
+            sight.emplace(sightAt<Seen>(blocks.data(), state.board));
+            before = blocks;
+        }
+        Eigen::Vector2d error;
+        errors.push_back(sight->error(seen, error, nullptr) ? std::optional(cv::Point2d(error.x(), error.y()))
+                                                            : std::nullopt);
+    }
+    return errors;
+}
+
+template <typename Seen, typename NameOf>
+void dropFrom(std::vector<Seen>& all, const InstallationState& state, double sigma, const InstallationNames& names,
+              const NameOf& nameOf, std::vector<Finding>& findings) {
+    std::vector<Seen> kept;
+    for (const SightGroup<Seen>& group : groupsOf(all)) {
+        std::vector<Seen> ours;
+        for (const Seen* seen : group) ours.push_back(*seen);
+        std::vector<cv::Point2d> errors;
+        for (const auto& error : errorsOf(ours, state)) errors.push_back(error.value_or(cv::Point2d(kMissed, 0.0)));
+        const Outliers outliers = outliersOf(errors, sigma);
+        if (outliers.count > 0)
+            findings.push_back(findingOf(outliers, nameOf(ours.front()), names.bodies[at(ours.front().body)]));
+        outliers.eraseFrom(ours);
+        kept.insert(kept.end(), ours.begin(), ours.end());
+    }
+    all = std::move(kept);
+}
 
 } // namespace
 
 double refineInstallation(const InstallationObservations& observations, const InstallationFree& free,
                           const InstallationNoise& noise, InstallationState& state, int steps) {
-    return InstallationProblem(observations, free, noise, state).solve(steps);
+    return InstallationProblem(observations, free, noise, state).solve(steps, state);
+}
+
+InstallationPlaces::InstallationPlaces(const InstallationState& state)
+    : projectors(kOfDevice * static_cast<int>(state.cameras.size())),
+      board(projectors + kOfDevice * static_cast<int>(state.projectors.size())), mirror(board + kBoardParameters),
+      bodies(mirror + 3), count(bodies + 6 * static_cast<int>(state.worldFromBody.size())) {}
+
+InstallationNormals installationNormals(const InstallationObservations& observations, const InstallationNoise& noise,
+                                        const InstallationState& state, Counts counts) {
+    InstallationState here = state;
+    InstallationNormals normals{
+        normalOf(observations.points, noise, here, counts), normalOf(observations.lights, noise, here, counts), {}};
+    const InstallationPlaces places(state);
+    normals.known = Eigen::MatrixXd::Zero(places.count, places.count);
+    const auto add = [&](int first, const InstallationNoise::Known& known) {
+        for (int i = 0; i < kLensParameters; ++i)
+            if (known.sigma[at(i)] > 0.0) normals.known(first + i, first + i) = std::pow(known.sigma[at(i)], -2.0);
+    };
+    for (std::size_t i = 0; i < noise.cameras.size(); ++i) add(places.camera(i), noise.cameras[i]);
+    for (std::size_t i = 0; i < noise.projectors.size(); ++i) add(places.projector(i), noise.projectors[i]);
+    return normals;
+}
+
+Eigen::MatrixXd inverseOfNormal(const Eigen::MatrixXd& normal) {
+    const Eigen::VectorXd scale = normal.diagonal().cwiseMax(1e-30).cwiseSqrt().cwiseInverse();
+    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solved(scale.asDiagonal() * normal * scale.asDiagonal());
+    const Eigen::VectorXd values = solved.eigenvalues().cwiseMax(kUnseen * solved.eigenvalues().maxCoeff());
+    return scale.asDiagonal() * solved.eigenvectors() * values.cwiseInverse().asDiagonal() *
+           solved.eigenvectors().transpose() * scale.asDiagonal();
 }
 
 InstallationState installationSigmas(const InstallationObservations& observations, const InstallationFree& free,
                                      const InstallationNoise& noise, const InstallationState& state) {
-    InstallationState here = state;
+    const InstallationNormals normals = installationNormals(observations, noise, state, Counts::asLossLets);
+    const std::vector<int> places = freePlaces(free, state);
+    std::vector<double> sigmas(at(InstallationPlaces(state).count), 0.0);
+    if (!places.empty()) {
+        const Eigen::MatrixXd all = normals.points + normals.lights + normals.known;
+        const Eigen::VectorXd variances = inverseOfNormal(all(places, places)).diagonal();
+        for (std::size_t i = 0; i < places.size(); ++i)
+            sigmas[at(places[i])] = std::sqrt(std::max(0.0, variances[static_cast<Eigen::Index>(i)]));
+    }
     InstallationState result = state;
-    for (auto* devices : {&result.cameras, &result.projectors})
-        for (InstallationState::Device& device : *devices) {
-            fillZero(device.lens);
-            fillZero(device.fromWorld);
-        }
-    for (PoseVector& pose : result.worldFromBody) fillZero(pose);
-    fillZero(result.mirror);
-    InstallationProblem(observations, free, noise, here).sigmas(result);
+    takeNumbers(sigmas, result);
     return result;
 }
 
-std::optional<cv::Point2d> errorOf(const SeenPoint& seen, const InstallationState& state) {
-    const auto& camera = state.cameras[static_cast<std::size_t>(seen.camera)];
-    double error[2];
-    if (!PointError{seen, 1.0}(camera.lens.data(), camera.fromWorld.data(),
-                               state.worldFromBody[static_cast<std::size_t>(seen.body)].data(), state.mirror.data(),
-                               error))
-        return std::nullopt;
-    return cv::Point2d(error[0], error[1]);
+std::vector<std::optional<cv::Point2d>> errorsOf(const std::vector<SeenPoint>& seen, const InstallationState& state) {
+    return errorsOfAll(seen, state);
 }
 
-std::optional<cv::Point2d> errorOf(const SeenLight& seen, const InstallationState& state) {
-    const auto& camera = state.cameras[static_cast<std::size_t>(seen.camera)];
-    const auto& projector = state.projectors[static_cast<std::size_t>(seen.projector)];
-    double error[2];
-    if (!LightError{seen, 1.0}(camera.lens.data(), camera.fromWorld.data(),
-                               state.worldFromBody[static_cast<std::size_t>(seen.body)].data(), projector.lens.data(),
-                               projector.fromWorld.data(), state.mirror.data(), error))
-        return std::nullopt;
-    return cv::Point2d(error[0], error[1]);
+std::vector<std::optional<cv::Point2d>> errorsOf(const std::vector<SeenLight>& seen, const InstallationState& state) {
+    return errorsOfAll(seen, state);
 }
 
-PoseVector composed(const PoseVector& a, const PoseVector& b) {
-    double qa[4], qb[4], q[4], way[3];
-    ceres::AngleAxisToQuaternion(a.data(), qa);
-    ceres::AngleAxisToQuaternion(b.data(), qb);
-    ceres::QuaternionProduct(qa, qb, q);
-    PoseVector result;
-    ceres::QuaternionToAngleAxis(q, result.data());
-    ceres::AngleAxisRotatePoint(a.data(), b.data() + 3, way);
-    for (std::size_t i = 0; i < 3; ++i) result[3 + i] = way[i] + a[3 + i];
-    return result;
-}
-
-PoseVector inverted(const PoseVector& pose) {
-    PoseVector result{-pose[0], -pose[1], -pose[2], 0, 0, 0};
-    double way[3];
-    ceres::AngleAxisRotatePoint(result.data(), pose.data() + 3, way);
-    for (std::size_t i = 0; i < 3; ++i) result[3 + i] = -way[i];
-    return result;
-}
-
-SeenLight lightOnBoard(const ProjectorPoint& pixels, const Lens& camera, const PoseVector& cameraFromBoard,
-                       const BoardShape& board) {
-    const cv::Point3d seen = pointOnBoard(pixels.camera, camera, cameraFromBoard, board);
-    const double inCamera[3] = {seen.x, seen.y, seen.z};
-    double place[3];
-    poseForward(inverted(cameraFromBoard).data(), inCamera, place);
-    const double step = 1e-4 * board.half;
-    const cv::Vec3d at = onBoard(board, {place[0], place[1], 0.0});
-    const cv::Vec3d across = cv::Vec3d(onBoard(board, {place[0] + step, place[1], 0.0})) - at;
-    const cv::Vec3d along = cv::Vec3d(onBoard(board, {place[0], place[1] + step, 0.0})) - at;
-    SeenLight light;
-    light.normal = cv::normalize(across.cross(along));
-    light.distance = light.normal.dot(at);
-    light.pixels = pixels;
-    return light;
+std::vector<Finding> dropOutliers(InstallationObservations& observations, const InstallationState& state,
+                                  const InstallationNoise& noise, const InstallationNames& names) {
+    std::vector<Finding> findings;
+    dropFrom(
+        observations.points, state, noise.camera, names,
+        [&](const SeenPoint& seen) { return "points of the board that " + names.cameras[at(seen.camera)] + " saw"; },
+        findings);
+    dropFrom(
+        observations.lights, state, noise.projector, names,
+        [&](const SeenLight& seen) {
+            return "points of the light of " + names.projectors[at(seen.projector)] + " that " +
+                   names.cameras[at(seen.camera)] + " saw";
+        },
+        findings);
+    return findings;
 }
 
 std::optional<std::vector<cv::Point3d>> turnedBoard(const std::vector<cv::Point3d>& board) {

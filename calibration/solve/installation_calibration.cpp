@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
+#include <iterator>
 #include <limits>
 #include <optional>
 #include <sstream>
@@ -103,7 +103,8 @@ private:
         state_.cameras[c].lens = solved.camera.lens;
         takeWarnings(solved.warnings, cameras_[c].name);
         boards_[c].resize(views_.size());
-        for (std::size_t i = 0; i < places.size(); ++i) boards_[c][places[i]] = solved.state.cameraFromBoard[i];
+        for (std::size_t i = 0; i < places.size(); ++i)
+            boards_[c][places[i]] = Rigid::exp(solved.state.cameraFromBoard[i]);
         progress_.report(0.3 * static_cast<double>(c + 1) / static_cast<double>(cameras_.size()), "cameras");
     }
 
@@ -115,13 +116,13 @@ private:
         }
     }
 
-    void placeCamera(std::size_t c, const PoseVector& fromWorld) {
-        state_.cameras[c].fromWorld = fromWorld;
+    void placeCamera(std::size_t c, const Rigid& fromWorld) {
+        state_.cameras[c].fromWorld = fromWorld.log();
         cameraPlaced_[c] = true;
-        const PoseVector toWorld = inverted(fromWorld);
+        const Rigid toWorld = fromWorld.inverse();
         for (std::size_t v = 0; v < views_.size(); ++v)
             if (sees(c, v) && !boardPlaced_[v]) {
-                state_.worldFromBody[v] = composed(toWorld, boards_[c][v]);
+                state_.worldFromBody[v] = (toWorld * boards_[c][v]).log();
                 boardPlaced_[v] = true;
             }
     }
@@ -139,12 +140,12 @@ private:
     /// By boards whose place is known, each of which the camera may have found turned.
     bool placeByBoards(std::size_t c) {
         double best = std::numeric_limits<double>::infinity();
-        PoseVector place{};
+        Rigid place;
         for (std::size_t v = 0; v < views_.size(); ++v) {
             if (!boardPlaced_[v] || !sees(c, v)) continue;
             const auto tryBoard = [&](const BoardPoints& corners) {
                 const PoseVector fromBoard = poseFromCamera({views_[v].name, corners, {}}, state_.cameras[c].lens);
-                const PoseVector fromWorld = composed(fromBoard, inverted(state_.worldFromBody[v]));
+                const Rigid fromWorld = Rigid::exp(fromBoard) * Rigid::exp(state_.worldFromBody[v]).inverse();
                 const double error = placeError(c, fromWorld);
                 if (!(error < best)) return;
                 best = error;
@@ -168,17 +169,17 @@ private:
     }
 
     [[nodiscard]] double boardError(std::size_t c, std::size_t v, const BoardPoints& corners,
-                                    const PoseVector& cameraFromWorld) const {
+                                    const Rigid& cameraFromWorld) const {
         const ViewObservations view{views_[v].name, corners, {}};
-        const double error = rmsOf(cameraErrors(view, {state_.cameras[c].lens, {}, {}, board_, {}},
-                                                composed(cameraFromWorld, state_.worldFromBody[v])));
+        const double error = rmsOf(cameraErrors(view, {state_.cameras[c].lens, {}, {}, state_.board, {}},
+                                                (cameraFromWorld * Rigid::exp(state_.worldFromBody[v])).log()));
         return std::isfinite(error) ? std::min(error, kNotThere) : kNotThere;
     }
 
     /// Of all boards that are placed, and of the light on them.
-    [[nodiscard]] double placeError(std::size_t c, const PoseVector& fromWorld) const {
+    [[nodiscard]] double placeError(std::size_t c, const Rigid& fromWorld) const {
         InstallationState there = state_;
-        there.cameras[c].fromWorld = fromWorld;
+        there.cameras[c].fromWorld = fromWorld.log();
         double sum = 0.0;
         for (std::size_t v = 0; v < views_.size(); ++v) {
             if (!boardPlaced_[v] || !sees(c, v)) continue;
@@ -193,23 +194,17 @@ private:
     }
 
     [[nodiscard]] double lightError(std::size_t c, std::size_t p, std::size_t v, const InstallationState& there) const {
-        const auto& light = lightOf(v, c, p);
+        std::vector<SeenLight> light;
+        for (const ProjectorPoint& pixels : lightOf(v, c, p)) light.push_back(seenLight(c, p, v, pixels));
         double sum = 0.0;
-        for (const ProjectorPoint& pixels : light) {
-            const auto error = errorOf(seenLight(c, p, v, pixels, there), there);
+        for (const auto& error : errorsOf(light, there))
             sum += error ? std::min(cv::norm(*error), kNotThere) : kNotThere;
-        }
         return light.empty() ? 0.0 : sum / static_cast<double>(light.size());
     }
 
-    [[nodiscard]] SeenLight seenLight(std::size_t c, std::size_t p, std::size_t v, const ProjectorPoint& pixels,
-                                      const InstallationState& there) const {
-        SeenLight seen = lightOnBoard(pixels, there.cameras[c].lens,
-                                      composed(there.cameras[c].fromWorld, there.worldFromBody[v]), board_);
-        seen.camera = static_cast<int>(c);
-        seen.projector = static_cast<int>(p);
-        seen.body = static_cast<int>(v);
-        return seen;
+    [[nodiscard]] static SeenLight seenLight(std::size_t c, std::size_t p, std::size_t v,
+                                             const ProjectorPoint& pixels) {
+        return {static_cast<int>(c), static_cast<int>(p), static_cast<int>(v), false, pixels};
     }
 
     /// A camera and a projector by themselves.
@@ -232,10 +227,11 @@ private:
         const ProcamCalibration pair = solvePair(*best, p);
         result_.projectors[p] = pair.projector;
         state_.projectors[p].lens = pair.projector.lens;
-        state_.projectors[p].fromWorld = composed(pair.projectorFromCamera, state_.cameras[*best].fromWorld);
+        state_.projectors[p].fromWorld =
+            (Rigid::exp(pair.projectorFromCamera) * Rigid::exp(state_.cameras[*best].fromWorld)).log();
         projectorPlaced_[p] = true;
         takeWarnings(pair.warnings, projectors_[p].name);
-        if (*best == 0) board_ = pair.state.board; // the boards are called as the first camera calls them
+        if (*best == 0) state_.board = pair.state.board; // the boards are called as the first camera calls them
         return true;
     }
 
@@ -243,7 +239,7 @@ private:
         for (std::size_t p = 0; p < projectors_.size(); ++p) {
             if (!projectorPlaced_[p] || sharedPoses(c, p) < kFewestShared) continue;
             const ProcamCalibration pair = solvePair(c, p);
-            placeCamera(c, composed(inverted(pair.projectorFromCamera), state_.projectors[p].fromWorld));
+            placeCamera(c, Rigid::exp(pair.projectorFromCamera).inverse() * Rigid::exp(state_.projectors[p].fromWorld));
             return true;
         }
         return false;
@@ -269,13 +265,13 @@ private:
                 if (!sees(c, v)) continue;
                 const BoardPoints& corners = views_[v].corners[c];
                 for (std::size_t i = 0; i < corners.seen.size(); ++i)
-                    observations_.points.push_back({static_cast<int>(c), static_cast<int>(v), false,
-                                                    onBoard(board_, corners.board[i]), corners.seen[i]});
+                    observations_.points.push_back(
+                        {static_cast<int>(c), static_cast<int>(v), false, corners.board[i], corners.seen[i]});
                 for (std::size_t p = 0; p < projectors_.size(); ++p) {
                     const auto& light = lightOf(v, c, p);
                     const std::size_t used = std::min(light.size(), kLightsOfView);
                     for (std::size_t i = 0; i < used; ++i)
-                        observations_.lights.push_back(seenLight(c, p, v, light[i * light.size() / used], state_));
+                        observations_.lights.push_back(seenLight(c, p, v, light[i * light.size() / used]));
                 }
             }
     }
@@ -288,14 +284,20 @@ private:
         free.bodies.assign(views_.size(), true);
         for (std::size_t v = 0; v < views_.size(); ++v) free.bodies[v] = boardPlaced_[v];
         InstallationNoise noise;
+        InstallationNames names;
+        for (const NamedDevice& camera : cameras_) names.cameras.push_back(camera.name);
+        for (const NamedDevice& projector : projectors_) names.projectors.push_back(projector.name);
+        for (const InstallationView& view : views_) names.bodies.push_back(view.name);
         for (int round = 0; round < 2; ++round) {
             progress_.throwIfCancelled();
             progress_.report(0.7 + 0.1 * round, "solving for all together");
             refineInstallation(observations_, free, noise, state_);
             noise.camera =
-                std::max(kSteady, rmsOfKind(observations_.points, [](const auto&) { return true; }) / std::sqrt(2.0));
+                std::max(kSteady, sigmaOf(errorsOfKind(observations_.points, [](const auto&) { return true; }), 0.0));
             noise.projector =
-                std::max(kSteady, rmsOfKind(observations_.lights, [](const auto&) { return true; }) / std::sqrt(2.0));
+                std::max(kSteady, sigmaOf(errorsOfKind(observations_.lights, [](const auto&) { return true; }), 0.0));
+            const std::vector<Finding> dropped = dropOutliers(observations_, state_, noise, names);
+            result_.warnings.insert(result_.warnings.end(), dropped.begin(), dropped.end());
         }
         progress_.throwIfCancelled();
         progress_.report(0.9, "uncertainties");
@@ -303,11 +305,17 @@ private:
     }
 
     template <typename Seen, typename Which>
-    [[nodiscard]] double rmsOfKind(const std::vector<Seen>& all, const Which& which) const {
+    [[nodiscard]] std::vector<cv::Point2d> errorsOfKind(const std::vector<Seen>& all, const Which& which) const {
+        std::vector<Seen> chosen;
+        std::ranges::copy_if(all, std::back_inserter(chosen), which);
         std::vector<cv::Point2d> errors;
-        for (const Seen& seen : all)
-            if (which(seen)) errors.push_back(errorOf(seen, state_).value_or(cv::Point2d(kNotThere, kNotThere)));
-        return rmsOf(errors);
+        for (const auto& error : errorsOf(chosen, state_))
+            errors.push_back(error.value_or(cv::Point2d(kNotThere, kNotThere)));
+        return errors;
+    }
+    template <typename Seen, typename Which>
+    [[nodiscard]] double rmsOfKind(const std::vector<Seen>& all, const Which& which) const {
+        return rmsOf(errorsOfKind(all, which));
     }
 
     void report() {
@@ -354,9 +362,8 @@ private:
     std::vector<InstallationView> views_;
     const std::vector<NamedDevice>&cameras_, &projectors_;
     const Progress& progress_;
-    std::vector<std::vector<PoseVector>> boards_; ///< by camera and view, from the camera alone
+    std::vector<std::vector<Rigid>> boards_; ///< by camera and view, from the camera alone
     std::vector<bool> cameraPlaced_, projectorPlaced_, boardPlaced_;
-    BoardShape board_;
     InstallationState state_;
     InstallationObservations observations_;
     InstallationCalibration result_;

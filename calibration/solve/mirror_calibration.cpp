@@ -8,7 +8,8 @@
 #include <utility>
 
 #include <Eigen/Dense>
-#include <opencv2/calib3d.hpp>
+#include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
 
 #include "calibration/solve/first_guess.h"
 #include "calibration/solve/installation_bundle.h"
@@ -29,15 +30,7 @@ Lens leftForRight(Lens lens, cv::Size size) {
     return lens;
 }
 
-/// A rotation vector's matrix.
-Eigen::Matrix3d turnOf(const PoseVector& pose) {
-    cv::Matx33d turn;
-    cv::Rodrigues(cv::Vec3d(pose[0], pose[1], pose[2]), turn);
-    Eigen::Matrix3d matrix;
-    for (int row = 0; row < 3; ++row)
-        for (int column = 0; column < 3; ++column) matrix(row, column) = turn(row, column);
-    return matrix;
-}
+Eigen::Matrix3d eigenOf(const glm::dmat3& matrix) { return Eigen::Map<const Eigen::Matrix3d>(&matrix[0][0]); }
 
 class MirrorSolver {
 public:
@@ -47,7 +40,6 @@ public:
     MirrorCalibration solve() {
         turned_ = turnedViews();
         result_.procam = calibrateProcam(turned_, camera_, projector_, {}, progress_.part(0.0, 0.8));
-        takeLights();
         result_.procam.camera.lens = leftForRight(result_.procam.camera.lens, camera_);
         result_.procam.state.camera = result_.procam.camera.lens;
         if (const auto mirror = firstMirror()) {
@@ -74,24 +66,6 @@ private:
         return turned;
     }
 
-    /// Where on the boards light was seen, as long as all is still that of the picture turned left for right.
-    void takeLights() {
-        const BundleState& state = result_.procam.state;
-        for (std::size_t v = 0; v < views_.size(); ++v) {
-            const auto& light = views_[v].light;
-            const std::size_t used = std::min(light.size(), kLightsOfMirrorView);
-            for (std::size_t i = 0; i < used; ++i) {
-                const std::size_t at = i * light.size() / used;
-                SeenLight seen =
-                    lightOnBoard(turned_[v].projector[at], state.camera, state.cameraFromBoard[v], state.board);
-                seen.body = static_cast<int>(v);
-                seen.mirrored = true;
-                seen.pixels = light[at];
-                observations_.lights.push_back(seen);
-            }
-        }
-    }
-
     [[nodiscard]] static bool seenDirectly(const MirrorView& view) {
         return static_cast<double>(view.direct.seen.size()) >= kFewestDirect;
     }
@@ -107,8 +81,9 @@ private:
     [[nodiscard]] Reflection reflectionOf(std::size_t v, const BoardPoints& direct) const {
         const Eigen::DiagonalMatrix<double, 3> flip(-1.0, 1.0, 1.0);
         const PoseVector pose = poseFromCamera({views_[v].name, direct, {}}, result_.procam.camera.lens);
-        const PoseVector both = composed(result_.procam.state.cameraFromBoard[v], inverted(pose));
-        return {flip * turnOf(both), flip * Eigen::Vector3d(both[3], both[4], both[5])};
+        const Rigid both = Rigid::exp(result_.procam.state.cameraFromBoard[v]) * Rigid::exp(pose).inverse();
+        const glm::dvec3& way = both.translation;
+        return {flip * eigenOf(both.rotation), flip * Eigen::Vector3d(way.x, way.y, way.z)};
     }
 
     /// How far it is from a reflection: such a one is symmetric, and shifts along the direction that it turns round.
@@ -145,22 +120,18 @@ private:
     void refineWith(const std::array<double, 3>& mirror) {
         InstallationState state;
         state.mirror = mirror;
-        const Eigen::Vector3d nearest(mirror[0], mirror[1], mirror[2]);
-        const Eigen::Vector3d normal = nearest.normalized();
-        const Eigen::DiagonalMatrix<double, 3> flip(-1.0, 1.0, 1.0);
-        const Eigen::Matrix3d turn = flip * (Eigen::Matrix3d::Identity() - 2.0 * normal * normal.transpose());
-        const Eigen::Vector3d way = flip * (2.0 * nearest);
-        cv::Matx33d matrix;
-        for (int row = 0; row < 3; ++row)
-            for (int column = 0; column < 3; ++column) matrix(row, column) = turn(row, column);
-        cv::Vec3d axis;
-        cv::Rodrigues(matrix, axis);
-        const PoseVector turnedFromCamera{axis[0], axis[1], axis[2], way.x(), way.y(), way.z()};
+        state.board = result_.procam.state.board;
+        const glm::dvec3 nearest(mirror[0], mirror[1], mirror[2]);
+        const glm::dvec3 normal = glm::normalize(nearest);
+        glm::dmat3 flip(1.0);
+        flip[0][0] = -1.0;
+        const Rigid turnedFromCamera(flip * (glm::dmat3(1.0) - 2.0 * glm::outerProduct(normal, normal)),
+                                     flip * (2.0 * nearest));
         const ProcamCalibration& procam = result_.procam;
         state.cameras = {{procam.camera.lens, PoseVector{}}};
-        state.projectors = {{procam.projector.lens, composed(procam.projectorFromCamera, turnedFromCamera)}};
+        state.projectors = {{procam.projector.lens, (Rigid::exp(procam.projectorFromCamera) * turnedFromCamera).log()}};
         for (const PoseVector& board : procam.state.cameraFromBoard)
-            state.worldFromBody.push_back(composed(inverted(turnedFromCamera), board));
+            state.worldFromBody.push_back((turnedFromCamera.inverse() * Rigid::exp(board)).log());
         nameBoards(state);
         gather();
         InstallationFree free;
@@ -169,12 +140,18 @@ private:
         free.bodies.assign(views_.size(), true);
         free.mirror = true;
         InstallationNoise noise;
+        InstallationNames names{{"the camera"}, {"the projector"}, {}};
+        for (const MirrorView& view : views_) names.bodies.push_back(view.name);
+        // What was left out before is here again, and is named again.
+        std::erase_if(result_.procam.warnings, [](const Finding& w) { return w.cause == Cause::pointSuspicious; });
         for (int round = 0; round < 2; ++round) {
             progress_.throwIfCancelled();
             progress_.report(0.8 + 0.05 * round, "solving with the mirror");
             refineInstallation(observations_, free, noise, state);
-            noise.camera = std::max(kLeastNoise, rmsOfSeen(observations_.points, state) / std::numbers::sqrt2);
-            noise.projector = std::max(kLeastNoise, rmsOfSeen(observations_.lights, state) / std::numbers::sqrt2);
+            noise.camera = std::max(kLeastNoise, sigmaOf(errorsOfSeen(observations_.points, state), 0.0));
+            noise.projector = std::max(kLeastNoise, sigmaOf(errorsOfSeen(observations_.lights, state), 0.0));
+            const std::vector<Finding> dropped = dropOutliers(observations_, state, noise, names);
+            result_.procam.warnings.insert(result_.procam.warnings.end(), dropped.begin(), dropped.end());
         }
         takeResult(state, installationSigmas(observations_, free, noise, state));
     }
@@ -202,31 +179,33 @@ private:
             const int body = static_cast<int>(v);
             const auto add = [&](const BoardPoints& corners, bool mirrored) {
                 for (std::size_t i = 0; i < corners.seen.size(); ++i)
-                    observations_.points.push_back(
-                        {0, body, mirrored, onBoard(result_.procam.state.board, corners.board[i]), corners.seen[i]});
+                    observations_.points.push_back({0, body, mirrored, corners.board[i], corners.seen[i]});
             };
             add(views_[v].mirrored, true);
+            const auto& light = views_[v].light;
+            const std::size_t used = std::min(light.size(), kLightsOfMirrorView);
+            for (std::size_t i = 0; i < used; ++i)
+                observations_.lights.push_back({0, 0, body, true, light[i * light.size() / used]});
             if (seenDirectly(views_[v])) add(direct_[v], false);
         }
     }
 
     template <typename Seen>
-    static double rmsOfSeen(const std::vector<Seen>& all, const InstallationState& state, int body = -1) {
+    static std::vector<cv::Point2d> errorsOfSeen(std::vector<Seen> all, const InstallationState& state, int body = -1) {
+        if (body >= 0) std::erase_if(all, [body](const Seen& seen) { return seen.body != body; });
         std::vector<cv::Point2d> errors;
-        for (const Seen& seen : all)
-            if (body < 0 || seen.body == body)
-                errors.push_back(errorOf(seen, state).value_or(cv::Point2d(100.0, 100.0)));
-        return rmsOf(errors);
+        for (const auto& error : errorsOf(all, state)) errors.push_back(error.value_or(cv::Point2d(100.0, 100.0)));
+        return errors;
     }
 
     void takeResult(const InstallationState& state, const InstallationState& sigma) {
         ProcamCalibration& procam = result_.procam;
         procam.camera.lens = state.cameras[0].lens;
         procam.camera.sigma = sigma.cameras[0].lens;
-        procam.camera.rms = rmsOfSeen(observations_.points, state);
+        procam.camera.rms = rmsOf(errorsOfSeen(observations_.points, state));
         procam.projector.lens = state.projectors[0].lens;
         procam.projector.sigma = sigma.projectors[0].lens;
-        procam.projector.rms = rmsOfSeen(observations_.lights, state);
+        procam.projector.rms = rmsOf(errorsOfSeen(observations_.lights, state));
         procam.projectorFromCamera = state.projectors[0].fromWorld;
         procam.projectorFromCameraSigma = sigma.projectors[0].fromWorld;
         procam.rms = std::hypot(procam.camera.rms, procam.projector.rms) / std::numbers::sqrt2;
@@ -235,8 +214,8 @@ private:
         double worst = -1.0;
         for (std::size_t v = 0; v < views_.size(); ++v) {
             ViewQuality& view = procam.views[v];
-            view.cameraRms = rmsOfSeen(observations_.points, state, static_cast<int>(v));
-            view.projectorRms = rmsOfSeen(observations_.lights, state, static_cast<int>(v));
+            view.cameraRms = rmsOf(errorsOfSeen(observations_.points, state, static_cast<int>(v)));
+            view.projectorRms = rmsOf(errorsOfSeen(observations_.lights, state, static_cast<int>(v)));
             const double error = std::hypot(view.cameraRms, view.projectorRms);
             if (error > worst) procam.worstView = view.name;
             worst = std::max(worst, error);

@@ -75,12 +75,10 @@ public:
 
     /// The board's middle at `middle`, tilted around x and y; nothing where one of the devices cannot see it.
     [[nodiscard]] std::optional<PoseVector> poseAt(const Eigen::Vector3d& middle, double tiltX, double tiltY) const {
-        const cv::Vec3d axis(tiltX, tiltY, 0.0);
-        cv::Matx33d turn;
-        cv::Rodrigues(axis, turn);
-        const cv::Vec3d way = cv::Vec3d(middle.x(), middle.y(), middle.z()) -
-                              turn * cv::Vec3d(0.5 * (low_.x + high_.x), 0.5 * (low_.y + high_.y), 0.0);
-        const PoseVector pose = {axis[0], axis[1], axis[2], way[0], way[1], way[2]};
+        const glm::dvec3 centre(0.5 * (low_.x + high_.x), 0.5 * (low_.y + high_.y), 0.0);
+        const glm::dvec3 way =
+            glm::dvec3(middle.x(), middle.y(), middle.z()) - Rigid::exp({tiltX, tiltY, 0.0, 0.0, 0.0, 0.0}) * centre;
+        const PoseVector pose = {tiltX, tiltY, 0.0, way.x, way.y, way.z};
         const ViewObservations view = planned(pose);
         const double margin = kMargin * calibration_.camera.size.width;
         for (const cv::Point2d& seen : view.corners.seen)
@@ -105,7 +103,7 @@ public:
     }
 
     [[nodiscard]] std::vector<cv::Point2d> outlineAt(const PoseVector& pose) const {
-        const PoseMatrix place(pose.data());
+        const PoseMatrix place(pose);
         std::vector<cv::Point2d> outline;
         for (const auto& [x, y] : {std::pair(low_.x, low_.y), {high_.x, low_.y}, {high_.x, high_.y}, {low_.x, high_.y}})
             outline.push_back(cameraPixel(place * Eigen::Vector3d(x, y, 0.0)));
@@ -140,7 +138,7 @@ private:
     }
 
     [[nodiscard]] ViewObservations planned(const PoseVector& pose) const {
-        const PoseMatrix place(pose.data());
+        const PoseMatrix place(pose);
         ViewObservations view;
         view.corners.board = points_;
         for (const cv::Point3d& point : points_)

@@ -9,7 +9,7 @@
 #include <utility>
 
 #include <Eigen/Dense>
-#include <opencv2/calib3d.hpp>
+#include <glm/geometric.hpp>
 
 #include "calibration/solve/board_shape.h"
 #include "calibration/solve/first_guess.h"
@@ -28,13 +28,10 @@ constexpr double kWorstPrincipal = 0.1;   // of a principal point, as a share of
 constexpr double kWorstCorner = 0.02;     // what a distortion term may be uncertain by at the image's corner, likewise
 constexpr int kPointsForChoice = 150;     // of a view
 constexpr int kPointsForSolution = 600;
-constexpr double kLeastSigma = 0.01;  // pixels
-constexpr double kStray = 3.0;        // standard deviations
-constexpr double kOutlier = 20.0;     // standard deviations: what is nearer, the losses bear
-constexpr double kFewOutliers = 0.05; // of a view's points: more of them have a cause that is to be found
-constexpr double kMostNoise = 1.0;    // pixels: more than any noise
-constexpr double kFits = 2.0;         // pixels: above, the model does not fit
-constexpr double kUntold = 1e-14;     // of the largest eigenvalue: a direction that the data do not tell
+constexpr double kLeastSigma = 0.01; // pixels
+constexpr double kStray = 3.0;       // standard deviations
+constexpr double kMostNoise = 1.0;   // pixels: more than any noise
+constexpr double kFits = 2.0;        // pixels: above, the model does not fit
 constexpr double kPi = std::numbers::pi;
 
 constexpr const char* kParameterNames[] = {"f", "aspect", "cx", "cy", "k1", "k2", "p1", "p2", "k3"};
@@ -299,14 +296,7 @@ private:
         std::vector<Eigen::Index> free;
         for (Eigen::Index i = 0; i < covariance.rows(); ++i)
             if (covariance(i, i) > 0.0) free.push_back(i);
-        const Eigen::MatrixXd normal = normalMatrixOf(views_, use_, bounded, state_)(free, free);
-        // Parameters have very different units.
-        const Eigen::VectorXd scale = normal.diagonal().cwiseMax(1e-30).cwiseSqrt().cwiseInverse();
-        const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solved(scale.asDiagonal() * normal * scale.asDiagonal());
-        const Eigen::VectorXd values = solved.eigenvalues().cwiseMax(kUntold * solved.eigenvalues().maxCoeff());
-        covariance(free, free) =
-            Eigen::MatrixXd(scale.asDiagonal() * solved.eigenvectors() * values.cwiseInverse().asDiagonal() *
-                            solved.eigenvectors().transpose() * scale.asDiagonal());
+        covariance(free, free) = inverseOfNormal(normalMatrixOf(views_, use_, bounded, state_)(free, free));
         return covariance;
     }
 
@@ -330,7 +320,7 @@ private:
     void requireTilt() const {
         double least = 1.0;
         for (const int a : use_)
-            for (const int b : use_) least = std::min(least, std::abs(normalOf(a).dot(normalOf(b))));
+            for (const int b : use_) least = std::min(least, std::abs(glm::dot(normalOf(a), normalOf(b))));
         if (std::acos(std::min(least, 1.0)) * 180.0 / kPi < kLeastTurnDegrees) throw frontal();
     }
 
@@ -340,11 +330,8 @@ private:
                                "capture it tilted by 20 to 45 degrees, to different sides"});
     }
 
-    [[nodiscard]] cv::Vec3d normalOf(int view) const {
-        const PoseVector& pose = state_.cameraFromBoard[static_cast<std::size_t>(view)];
-        cv::Matx33d rotation;
-        cv::Rodrigues(cv::Vec3d(pose[0], pose[1], pose[2]), rotation);
-        return {rotation(0, 2), rotation(1, 2), rotation(2, 2)};
+    [[nodiscard]] glm::dvec3 normalOf(int view) const {
+        return Rigid::exp(state_.cameraFromBoard[static_cast<std::size_t>(view)]).rotation[2];
     }
 
     /// From what is left of the observations: their noise, and how far neighbours err alike.
@@ -390,71 +377,48 @@ private:
         }
     }
 
-    /// Drops a view's points whose errors are beyond `most` pixels, and says so; not where they are many. Returns
-    /// whether there were any.
-    template <typename Points>
-    bool dropped(const ViewObservations& view, const std::vector<cv::Point2d>& errors, double most, const char* what,
-                 const Points& drop) {
-        std::vector<bool> isOut;
-        double worst = 0.0;
-        for (const cv::Point2d& error : errors) {
-            const double size = cv::norm(error);
-            isOut.push_back(!(size <= most));
-            if (isOut.back()) worst = std::max(worst, size);
-        }
-        const auto count = static_cast<std::size_t>(std::ranges::count(isOut, true));
-        if (count == 0 || static_cast<double>(count) > kFewOutliers * static_cast<double>(errors.size())) return false;
-        dropped_.push_back({Cause::pointSuspicious, view.name, "",
-                            std::to_string(count) + " of " + std::to_string(errors.size()) + " " + what +
-                                " lie up to " + pixels(worst) + " from where the others have them",
-                            "nothing: they were left out; a reflection or something before the board makes "
-                            "such points"});
-        drop(isOut);
-        return true;
-    }
-
     /// Points whose rays miss the board, before a projector is known.
     void dropMissed() {
         for (const int v : use_) {
             const auto at = static_cast<std::size_t>(v);
             ViewObservations& view = views_[at];
-            std::vector<bool> isOut;
+            Outliers missed;
             for (const ProjectorPoint& point : view.projector) {
                 const double depth =
                     pointOnBoard(point.camera, state_.camera, state_.cameraFromBoard[at], state_.board).z;
-                isOut.push_back(!(depth > 0.0) || !std::isfinite(depth));
+                missed.isOut.push_back(!(depth > 0.0) || !std::isfinite(depth));
             }
-            const auto count = std::ranges::count(isOut, true);
+            const auto count = std::ranges::count(missed.isOut, true);
             if (count == 0) continue;
             dropped_.push_back({Cause::pointSuspicious, view.name, "",
-                                std::to_string(count) + " of " + std::to_string(isOut.size()) +
+                                std::to_string(count) + " of " + std::to_string(missed.isOut.size()) +
                                     " decoded points lie on rays that miss the board",
                                 "nothing: they were left out"});
-            erase(view.projector, isOut);
+            missed.eraseFrom(view.projector);
         }
     }
 
+    /// Returns whether there were any; what they were is among the warnings.
     bool dropOutliers() {
-        bool any = false;
+        const std::size_t before = dropped_.size();
+        const auto find = [&](const std::vector<cv::Point2d>& errors, double sigma, const char* what,
+                              const std::string& view) {
+            Outliers outliers = outliersOf(errors, sigma);
+            if (outliers.count > 0) dropped_.push_back(findingOf(outliers, what, view));
+            return outliers;
+        };
         for (const int v : use_) {
-            const auto at = static_cast<std::size_t>(v);
-            ViewObservations& view = views_[at];
-            any |= dropped(view, cameraErrors(view, state_, state_.cameraFromBoard[at]), kOutlier * bundle_.cameraSigma,
-                           "points of the board", [&](const std::vector<bool>& isOut) {
-                               erase(view.corners.board, isOut);
-                               erase(view.corners.seen, isOut);
-                           });
-            if (!bundle_.projectorPoints) continue;
-            any |= dropped(view, projectorErrors(view, state_, state_.cameraFromBoard[at]),
-                           kOutlier * bundle_.projectorSigma, "decoded points",
-                           [&](const std::vector<bool>& isOut) { erase(view.projector, isOut); });
+            ViewObservations& view = views_[static_cast<std::size_t>(v)];
+            const PoseVector& pose = state_.cameraFromBoard[static_cast<std::size_t>(v)];
+            const Outliers corners =
+                find(cameraErrors(view, state_, pose), bundle_.cameraSigma, "points of the board", view.name);
+            corners.eraseFrom(view.corners.board);
+            corners.eraseFrom(view.corners.seen);
+            if (bundle_.projectorPoints)
+                find(projectorErrors(view, state_, pose), bundle_.projectorSigma, "decoded points", view.name)
+                    .eraseFrom(view.projector);
         }
-        return any;
-    }
-
-    template <typename Value> static void erase(std::vector<Value>& values, const std::vector<bool>& isOut) {
-        std::size_t at = 0;
-        std::erase_if(values, [&](const Value&) { return isOut[at++]; });
+        return dropped_.size() > before;
     }
 
     void takeFreedom() {

@@ -30,16 +30,15 @@ Eigen::Matrix3d crossOf(const Eigen::Vector3d& v) {
     return cross;
 }
 
-PoseMatrix::PoseMatrix(const double* pose) : shift(pose[3], pose[4], pose[5]) {
+PoseMatrix::PoseMatrix(const PoseVector& pose) : shift(pose[3], pose[4], pose[5]) {
     const Eigen::Vector3d w(pose[0], pose[1], pose[2]);
     const double angle = w.norm();
     const Eigen::Matrix3d cross = crossOf(w);
     const bool small = angle < 1e-4;
     const double a2 = angle * angle;
-    const double first = small ? 1.0 - a2 / 6.0 : std::sin(angle) / angle;
     const double second = small ? 0.5 - a2 / 24.0 : (1.0 - std::cos(angle)) / a2;
     const double third = small ? 1.0 / 6.0 - a2 / 120.0 : (angle - std::sin(angle)) / (a2 * angle);
-    rotation = Eigen::Matrix3d::Identity() + first * cross + second * cross * cross;
+    rotation = Eigen::Map<const Eigen::Matrix3d>(&Rigid::exp(pose).rotation[0][0]);
     turn = Eigen::Matrix3d::Identity() - second * cross + third * cross * cross;
 }
 

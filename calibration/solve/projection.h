@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 
 #include "calibration/solve/lens_model.h"
+#include "core/geometry/rigid.h"
 
 namespace lumorph {
 
@@ -18,7 +19,7 @@ struct PoseMatrix {
     Eigen::Matrix3d rotation, turn;
     Eigen::Vector3d shift;
 
-    explicit PoseMatrix(const double* pose);
+    explicit PoseMatrix(const PoseVector& pose);
     [[nodiscard]] Eigen::Vector3d operator*(const Eigen::Vector3d& point) const { return rotation * point + shift; }
 };
 

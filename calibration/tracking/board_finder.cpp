@@ -142,15 +142,6 @@ Pose poseOf(const glm::dmat4& matrix) {
     return {glm::dvec3(matrix[3]), glm::normalize(glm::quat_cast(glm::dmat3(matrix)))};
 }
 
-Pose combined(const Pose& first, const Pose& second) {
-    return {first.position + first.rotation * second.position, glm::normalize(first.rotation * second.rotation)};
-}
-
-Pose inverted(const Pose& pose) {
-    const glm::dquat back = glm::conjugate(pose.rotation);
-    return {back * -pose.position, back};
-}
-
 } // namespace
 
 void checkBoard(const MarkerBoard& board) {
@@ -325,8 +316,8 @@ std::vector<BlackBox> BoardFinder::blackBoxes(const MarkerBoard& board) {
 }
 
 Pose worldFromDevice(const BoardSighting& sighting, const CalibratedCamera& camera, const Pose& deviceFromBoard) {
-    const Pose worldFromCamera = inverted(poseOf(camera.cameraFromWorld));
-    return combined(combined(worldFromCamera, sighting.cameraFromBoard), inverted(deviceFromBoard));
+    const Pose worldFromCamera = inverseOf(poseOf(camera.cameraFromWorld));
+    return worldFromCamera * sighting.cameraFromBoard * inverseOf(deviceFromBoard);
 }
 
 } // namespace lumorph

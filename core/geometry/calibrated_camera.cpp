@@ -12,6 +12,7 @@
 #include <glm/mat3x3.hpp>
 
 #include "core/base/error.h"
+#include "core/geometry/rigid.h"
 #include "core/geometry/triangle_mesh.h"
 
 namespace lumorph {
@@ -140,9 +141,7 @@ bool isRigid(const glm::dmat4& pose) {
 
 } // namespace
 
-glm::dvec3 positionOf(const CalibratedCamera& camera) {
-    return -(glm::transpose(glm::dmat3(camera.cameraFromWorld)) * glm::dvec3(camera.cameraFromWorld[3]));
-}
+glm::dvec3 positionOf(const CalibratedCamera& camera) { return Rigid(camera.cameraFromWorld).inverse().translation; }
 
 std::optional<glm::dvec2> pixelOf(const CalibratedCamera& camera, const glm::dvec3& point) {
     const glm::dvec3 local = inCamera(camera, point);

@@ -16,6 +16,17 @@ glm::dmat4 matrixOf(const Pose& pose) {
     return matrix;
 }
 
+Pose operator*(const Pose& aFromB, const Pose& bFromC) {
+    return {aFromB * bFromC.position, glm::normalize(aFromB.rotation * bFromC.rotation)};
+}
+
+glm::dvec3 operator*(const Pose& aFromB, const glm::dvec3& inB) { return aFromB.rotation * inB + aFromB.position; }
+
+Pose inverseOf(const Pose& pose) {
+    const glm::dquat back = glm::conjugate(pose.rotation);
+    return {-(back * pose.position), back};
+}
+
 namespace {
 
 constexpr double kFarthest = 1000.0; // metres; what lies beyond is no room

@@ -24,6 +24,10 @@ struct Pose {
 
 /// `worldFromBody` of a pose.
 [[nodiscard]] glm::dmat4 matrixOf(const Pose& pose);
+/// `aFromC` of `aFromB` and `bFromC`.
+[[nodiscard]] Pose operator*(const Pose& aFromB, const Pose& bFromC);
+[[nodiscard]] glm::dvec3 operator*(const Pose& aFromB, const glm::dvec3& inB);
+[[nodiscard]] Pose inverseOf(const Pose& pose);
 
 /// What a tracker said about one body at one moment.
 struct PoseSample {

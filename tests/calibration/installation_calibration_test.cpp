@@ -123,6 +123,33 @@ TEST(InstallationCalibration, TwoCamerasAndTwoProjectorsComeIntoOneWorld) {
     ASSERT_EQ(result.views.size(), 7U);
 }
 
+TEST(InstallationCalibration, PointsThatAreFarOffOrMissTheBoardAreLeftOutAndNamed) {
+    const Room room;
+    const auto sound = room.capture({{0, 1}, {0, 1}, {0}, {0, 1}, {1}, {0, 1}, {0, 1}}, 0.05, 3);
+    auto spoiled = sound;
+    spoiled[1].corners[0].seen[3] += cv::Point2d(9.0, 0.0);
+    spoiled[3].light[1][1][5].projector += cv::Point2d(40.0, 5.0);
+    spoiled[3].light[1][1][50].projector += cv::Point2d(-30.0, 60.0);
+    spoiled[5].light[0][0][7].camera = {1e5, 400.0}; // a ray that misses the board
+    const InstallationCalibration result = calibrateInstallation(spoiled, room.cameraNames, room.projectorNames);
+    std::vector<std::string> named;
+    for (const Finding& warning : result.warnings)
+        if (warning.cause == Cause::pointSuspicious)
+            named.push_back(warning.view + ": " + warning.why.substr(0, warning.why.find(" lie ")));
+    EXPECT_THAT(named, ::testing::UnorderedElementsAre(
+                           "pose_1: 1 of 63 points of the board that left camera saw",
+                           "pose_3: 2 of 63 points of the light of side projector that right camera saw",
+                           "pose_5: 1 of 63 points of the light of upper projector that left camera saw"));
+    const InstallationCalibration clean = calibrateInstallation(sound, room.cameraNames, room.projectorNames);
+    EXPECT_NEAR(result.rms, clean.rms, 0.002);
+    for (std::size_t i = 0; i < 2; ++i) {
+        EXPECT_NEAR(result.cameras[i].lens[kFocalLength], clean.cameras[i].lens[kFocalLength],
+                    0.5 * clean.cameras[i].sigma[kFocalLength]);
+        EXPECT_NEAR(result.projectors[i].lens[kFocalLength], clean.projectors[i].lens[kFocalLength],
+                    0.5 * clean.projectors[i].sigma[kFocalLength]);
+    }
+}
+
 TEST(InstallationCalibration, CamerasThatShareNoBoardMeetByAProjectorsLight) {
     const Room room;
     const auto views = room.capture({{0}, {1}, {0}, {1}, {0}, {1}, {0, 1}}, 0.05, 4);
