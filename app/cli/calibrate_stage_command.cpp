@@ -7,8 +7,8 @@
 #include "app/cli/commands.h"
 #include "app/cli/project_frame.h"
 #include "app/cli/stage_output.h"
+#include "calibration/lab/boards_lab.h"
 #include "calibration/lab/moved_room.h"
-#include "calibration/lab/true_room.h"
 #include "calibration/stages/lab_bench.h"
 #include "calibration/verify/check_picture.h"
 #include "core/base/error.h"
@@ -97,7 +97,7 @@ public:
 
 Installation trueRoomOf(const StageArguments& arguments, const CalibrationStage& stage, const StageSite& site) {
     const std::string_view key = stage.key;
-    if (key != "verify" && key != "device") return trueRoom(site.room, site.rig->actuators(), arguments.seed);
+    if (key != "verify" && key != "device") return unpackedLab(site.room, site.rig->actuators(), arguments.seed);
     // A check asks what has moved since, and by the device only what is known can be measured: else all is as it was.
     Installation truth = withLabCamera(site.room);
     std::uint32_t seed = arguments.seed;

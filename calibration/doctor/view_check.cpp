@@ -19,6 +19,7 @@ constexpr int kCameraBorder = 4;       // pixels that tell nothing of where the 
 constexpr int kBand = 8;               // projector pixels
 constexpr double kSameEnd = 1.2;       // resolved stripes: an edge of something lit is hardly ever that parallel
 constexpr double kEndSlack = 4.0;      // resolved stripes that may be lost at the picture's end
+constexpr double kEndPixels = 2.5;     // camera pixels
 constexpr double kPaper = 1.6;         // a board with its margin to the outline of its points
 constexpr double kLeastBeside = 0.05;  // of the light
 constexpr int kRim = 3;                // camera pixels
@@ -206,7 +207,11 @@ std::optional<Finding> checkProjectorSize(const std::string& view, const Decoded
     const PictureEnd row = endOf(decoded.row, decoded.column, decoded.rowCell);
     const int width = projector.width;
     const int height = projector.height;
-    const double slack = kEndSlack * std::max(decoded.columnCell, decoded.rowCell);
+    const cv::Matx22d growth = growthOf(somePointsOf(decoded));
+    // Nor is an end known to less than what a camera pixel covers and its blur.
+    const double slack =
+        std::max(kEndSlack * std::max(decoded.columnCell, decoded.rowCell),
+                 kEndPixels * std::max(std::hypot(growth(0, 0), growth(0, 1)), std::hypot(growth(1, 0), growth(1, 1))));
     // A board before the dark, nothing lit beside it: the light then ends where the board does.
     const bool isBoardAlone = shareBeside(decoded, board) < kLeastBeside;
     const auto endsAt = [slack, isBoardAlone](const PictureEnd& end, int length) {
@@ -216,7 +221,6 @@ std::optional<Finding> checkProjectorSize(const std::string& view, const Decoded
         return end.last > length - 0.4 || (end.isSharp && !isBoardAlone && end.last + 1.0 < length - slack);
     };
     if (!isWrong(column, width) && !isWrong(row, height)) return std::nullopt;
-    const cv::Matx22d growth = growthOf(somePointsOf(decoded));
     const bool isMirror = cv::determinant(growth) < 0.0;
     if (isMirror && !isUpright(growth)) return exchangedAxes(view);
     if (isMirror && (column.last > width - 0.4 || row.last > height - 0.4))

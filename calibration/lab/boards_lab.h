@@ -2,6 +2,8 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
+#include <span>
 #include <string>
 
 #include <glm/vec3.hpp>
@@ -9,6 +11,7 @@
 #include "calibration/doctor/boards_capture.h"
 #include "calibration/lab/board_lab.h"
 #include "core/base/progress.h"
+#include "core/rig/rig.h"
 #include "core/scene/installation.h"
 
 namespace lumorph {
@@ -20,6 +23,17 @@ namespace lumorph {
 /// The whole room as it truly is in the lab: projectors that were calibrated stand where they are believed to, all
 /// others, and a camera where none was calibrated, as somebody has put them up.
 [[nodiscard]] Installation labRoomTruth(Installation room);
+
+/// Root mean square distance, metres, by which light of `believed` lands beside where `truth` puts it, over a square of
+/// `side` metres on the table around the world's origin; empty where neither lights it.
+[[nodiscard]] std::optional<double> lightError(const CalibratedCamera& believed, const CalibratedCamera& truth,
+                                               double side);
+
+/// What truly stands in the virtual lab whose boxes were unpacked with this seed, which nobody who measures knows: the
+/// same for the same seed and actuators, whatever was measured meanwhile. Projectors and cameras stand where they are
+/// believed to; where the lab's own sequence measured a projector, where that truly has it (labTruth).
+[[nodiscard]] Installation unpackedLab(const Installation& believed, std::span<const Actuator> actuators,
+                                       std::uint32_t seed);
 
 /// How boards are photographed in the lab before all projectors and cameras of a room, or before a mirror.
 struct BoardsLabOptions {

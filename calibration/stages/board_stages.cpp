@@ -3,9 +3,12 @@
 #include <string>
 #include <utility>
 
-#include <opencv2/calib3d.hpp>
+#include <glm/geometric.hpp>
+#include <glm/gtc/constants.hpp>
+#include <glm/matrix.hpp>
 
 #include "calibration/report/calibrated_room.h"
+#include "calibration/solve/first_guess.h"
 #include "calibration/solve/installation_calibration.h"
 #include "calibration/stages/stage_rows.h"
 #include "core/base/error.h"
@@ -155,38 +158,26 @@ ReadBoards boardsOf(const StageRecording& recording) {
     return read;
 }
 
-/// Where a board lies before a camera by its points alone; empty where it is not seen.
-std::optional<PoseVector> poseBefore(const Lens& lens, const BoardPoints& seen) {
-    if (seen.seen.size() < 6) return std::nullopt;
-    const cv::Matx33d camera(lens[kFocalLength], 0.0, lens[kPrincipalX], 0.0, lens[kFocalLength] * lens[kAspect],
-                             lens[kPrincipalY], 0.0, 0.0, 1.0);
-    const std::vector<double> distortion{lens[kK1], lens[kK2], lens[kP1], lens[kP2], lens[kK3]};
-    cv::Vec3d turn, shift;
-    if (!cv::solvePnP(seen.board, seen.seen, camera, distortion, turn, shift, false, cv::SOLVEPNP_IPPE))
-        return std::nullopt;
-    cv::solvePnPRefineLM(seen.board, seen.seen, camera, distortion, turn, shift);
-    return PoseVector{turn[0], turn[1], turn[2], shift[0], shift[1], shift[2]};
-}
-
 /// Light of a board that was held out: where the others put it, less where it was decoded.
 std::vector<stages::LightBeside> besideOn(InstallationState state, std::size_t camera, std::size_t projector,
-                                          const PoseVector& worldFromBoard, const std::vector<ProjectorPoint>& light,
+                                          const Rigid& worldFromBoard, const std::vector<ProjectorPoint>& light,
                                           bool isMirrored) {
     std::vector<stages::LightBeside> all;
-    state.worldFromBody = {worldFromBoard};
+    state.worldFromBody = {worldFromBoard.log()};
     const InstallationState::Device& lamp = state.projectors[projector];
-    const PoseVector lampFromBoard = composed(lamp.fromWorld, worldFromBoard);
-    const double distance = kMetresPerUnit * std::hypot(lampFromBoard[3], lampFromBoard[4], lampFromBoard[5]);
-    for (const ProjectorPoint& point : light) {
-        SeenLight seen;
-        seen.camera = static_cast<int>(camera);
-        seen.projector = static_cast<int>(projector);
-        seen.mirrored = isMirrored;
-        seen.pixels = point;
-        if (const auto error = errorOf(seen, state)) {
-            const double pixels = std::hypot(error->x, error->y);
-            all.push_back({pixels, pixels * distance / lamp.lens[kFocalLength]});
-        }
+    const Rigid lampFromBoard = Rigid::exp(lamp.fromWorld) * worldFromBoard;
+    const double distance = kMetresPerUnit * glm::length(lampFromBoard.translation);
+    std::vector<SeenLight> seen(light.size());
+    for (std::size_t i = 0; i < light.size(); ++i) {
+        seen[i].camera = static_cast<int>(camera);
+        seen[i].projector = static_cast<int>(projector);
+        seen[i].mirrored = isMirrored;
+        seen[i].pixels = light[i];
+    }
+    for (const auto& error : errorsOf(seen, state)) {
+        if (!error) continue;
+        const double pixels = std::hypot(error->x, error->y);
+        all.push_back({pixels, pixels * distance / lamp.lens[kFocalLength]});
     }
     return all;
 }
@@ -227,7 +218,7 @@ Installation roomWith(const Installation& room, const InstallationCalibration& s
             world = worldFromCamera(pair, board, room, placement);
             placement.turn = 0.0;
             const glm::dmat4 straight = worldFromCamera(pair, board, room, placement);
-            if (glm::dot(glm::dvec3(world[0]), glm::dvec3(straight[0])) < 0.0) placement.turn = CV_PI;
+            if (glm::dot(glm::dvec3(world[0]), glm::dvec3(straight[0])) < 0.0) placement.turn = glm::pi<double>();
         }
         with = withCalibration(std::move(with), pair, board, placement);
         InstalledProjector& projector = with.projectors[placement.projector];
@@ -241,9 +232,9 @@ Installation roomWith(const Installation& room, const InstallationCalibration& s
         InstalledCamera& camera = with.cameras[place];
         camera.name = read.cameras[c].name;
         camera.camera = cameraOf(solved.cameras[c]);
-        PoseVector pose = solved.state.cameras[c].fromWorld;
-        for (std::size_t i = 3; i < 6; ++i) pose[i] *= kMetresPerUnit;
-        camera.camera.cameraFromWorld = stages::matrixOf(pose) * glm::inverse(world);
+        Rigid pose = Rigid::exp(solved.state.cameras[c].fromWorld);
+        pose.translation *= kMetresPerUnit;
+        camera.camera.cameraFromWorld = (pose * Rigid(world).inverse()).matrix();
         camera.lens = camera.pose = first.pose;
     }
     checkInstallation(with);
@@ -267,9 +258,9 @@ StageResult solveRoom(const StageRecording& recording, const StageSite& site, co
         std::vector<stages::LightBeside> all;
         for (const InstallationView& view : held)
             for (std::size_t c = 0; c < read.cameras.size(); ++c) {
-                const auto pose = poseBefore(solved.cameras[c].lens, view.corners[c]);
-                if (!pose) continue;
-                const PoseVector world = composed(inverted(solved.state.cameras[c].fromWorld), *pose);
+                if (view.corners[c].seen.empty()) continue;
+                const PoseVector pose = poseFromCamera({view.name, view.corners[c], {}}, solved.cameras[c].lens);
+                const Rigid world = Rigid::exp(solved.state.cameras[c].fromWorld).inverse() * Rigid::exp(pose);
                 for (std::size_t p = 0; p < read.projectors.size(); ++p)
                     for (const stages::LightBeside& one :
                          besideOn(solved.state, c, p, world, view.light[c][p], false)) {
@@ -304,6 +295,21 @@ StageResult solveRoom(const StageRecording& recording, const StageSite& site, co
 
 constexpr const char* kMirrorMethod = "structured light in a mirror";
 
+/// Where a board lies before the camera that sees it in a mirror. In the picture turned left for right there is no
+/// mirror, but a camera behind it; turning x and mirroring together are a rotation again.
+Rigid behindMirror(const MirrorView& view, Lens lens, int pictureWidth, const MirrorPlane& plane) {
+    const double last = pictureWidth - 1;
+    lens[kPrincipalX] = last - lens[kPrincipalX];
+    lens[kP2] = -lens[kP2];
+    ViewObservations turned{view.name, view.mirrored, {}};
+    for (cv::Point2d& pixel : turned.corners.seen) pixel.x = last - pixel.x;
+    const glm::dvec3 normal(plane.normal[0], plane.normal[1], plane.normal[2]);
+    glm::dmat3 flip(1.0);
+    flip[0][0] = -1.0;
+    const Rigid back((glm::dmat3(1.0) - 2.0 * glm::outerProduct(normal, normal)) * flip, 2.0 * plane.distance * normal);
+    return back * Rigid::exp(poseFromCamera(turned, lens));
+}
+
 StageResult solveMirror(const StageRecording& recording, const StageSite& site, const Progress& progress) {
     PlacedDevices result;
     result.room = site.room;
@@ -331,36 +337,11 @@ StageResult solveMirror(const StageRecording& recording, const StageSite& site, 
         state.projectors = {{procam.projector.lens, procam.projectorFromCamera}};
         const cv::Vec3d nearest = solved.mirror->distance * solved.mirror->normal;
         state.mirror = {nearest[0], nearest[1], nearest[2]};
+        state.board = procam.state.board;
         std::vector<stages::LightBeside> beside;
-        for (MirrorView& view : held) {
-            // In the picture turned left for right there is no mirror, but a camera behind it.
-            Lens turned = procam.camera.lens;
-            const double width = read.cameras.front().size.width - 1;
-            turned[kPrincipalX] = width - turned[kPrincipalX];
-            turned[kP2] = -turned[kP2];
-            BoardPoints corners = view.mirrored;
-            for (cv::Point2d& pixel : corners.seen) pixel.x = width - pixel.x;
-            const auto pose = poseBefore(turned, corners);
-            if (!pose) continue;
-            // Before the true camera: x turned back, then mirrored. The two flips together are a rotation again.
-            const cv::Vec3d normal = solved.mirror->normal;
-            glm::dmat3 flip(1.0), mirror(1.0);
-            flip[0][0] = -1.0;
-            for (int i = 0; i < 3; ++i)
-                for (int k = 0; k < 3; ++k) mirror[k][i] -= 2.0 * normal[i] * normal[k];
-            glm::dmat4 back(mirror * flip);
-            for (int i = 0; i < 3; ++i) back[3][i] = 2.0 * nearest[i];
-            const glm::dmat4 world = back * stages::matrixOf(*pose);
-            cv::Matx33d turn;
-            PoseVector cameraFromBoard{};
-            for (int row = 0; row < 3; ++row) {
-                for (int column = 0; column < 3; ++column) turn(row, column) = world[column][row];
-                cameraFromBoard[3 + static_cast<std::size_t>(row)] = world[3][row];
-            }
-            cv::Vec3d axis;
-            cv::Rodrigues(turn, axis);
-            for (std::size_t i = 0; i < 3; ++i) cameraFromBoard[i] = axis[static_cast<int>(i)];
-            const auto more = besideOn(state, 0, 0, cameraFromBoard, view.light, true);
+        for (const MirrorView& view : held) {
+            const Rigid pose = behindMirror(view, procam.camera.lens, read.cameras.front().size.width, *solved.mirror);
+            const auto more = besideOn(state, 0, 0, pose, view.light, true);
             beside.insert(beside.end(), more.begin(), more.end());
         }
         result.heldOut = stages::heldOutOf(std::move(beside));

@@ -132,7 +132,7 @@ ReadShots shotsOf(const StageRecording& recording, std::size_t actuators) {
 }
 
 glm::dmat4 placeOf(const PoseVector& fromDevice, const Installation& room) {
-    return stages::matrixOf(fromDevice) * glm::inverse(glm::dmat4(room.worldFromDevice));
+    return (Rigid::exp(fromDevice) * Rigid(glm::dmat4(room.worldFromDevice)).inverse()).matrix();
 }
 
 /// Light on the shot that was held out: rays of the camera meet the device there, and what they meet is lit by a pixel.

@@ -3,22 +3,9 @@
 #include <algorithm>
 #include <cstdio>
 
-#include <opencv2/calib3d.hpp>
-
 #include "calibration/stages/stage_rows.h"
 
 namespace lumorph::stages {
-
-glm::dmat4 matrixOf(const PoseVector& pose) {
-    cv::Matx33d turn;
-    cv::Rodrigues(cv::Vec3d(pose[0], pose[1], pose[2]), turn);
-    glm::dmat4 matrix(1.0);
-    for (int row = 0; row < 3; ++row) {
-        for (int column = 0; column < 3; ++column) matrix[column][row] = turn(row, column);
-        matrix[3][row] = pose[3 + static_cast<std::size_t>(row)];
-    }
-    return matrix;
-}
 
 HeldOutLight heldOutOf(std::vector<LightBeside> all) {
     HeldOutLight light;

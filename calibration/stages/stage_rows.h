@@ -28,8 +28,6 @@ namespace lumorph::stages {
 void applyPlaces(const Installation& measured, Installation& room);
 /// Origin of the first projector's place, where a method whose name begins so measured it; else null.
 [[nodiscard]] const Origin* originByMethod(const Installation& room, std::string_view method);
-/// A rotation and a translation as a matrix.
-[[nodiscard]] glm::dmat4 matrixOf(const PoseVector& pose);
 /// The middle and nearly the worst of how far light lies beside.
 struct LightBeside {
     double pixels = 0.0, metres = 0.0;

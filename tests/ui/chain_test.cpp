@@ -7,7 +7,6 @@
 #include <QRegularExpression>
 #include <glm/gtc/quaternion.hpp>
 
-#include "app/studio/calibration/capture_bench.h"
 #include "app/studio/calibration/chain.h"
 #include "app/studio/calibration/chain_files.h"
 #include "app/studio/document/scene_edit.h"
@@ -205,8 +204,7 @@ TEST_F(Chain, TwoProjectorsAndOneInAMirrorAreCalibratedByTheMouse) {
     EXPECT_EQ(badge("light"), "Later");
     const auto lightBeside = [&](std::size_t k) { // millimetres, on the table under the device
         const Installation truth = labTruth(room(), k);
-        return 1e3 *
-               studio::lightError(room().projectors[k].camera, truth.projectors.front().camera, 0.2).value_or(9.0);
+        return 1e3 * lightError(room().projectors[k].camera, truth.projectors.front().camera, 0.2).value_or(9.0);
     };
     EXPECT_GT(lightBeside(0), 5.0) << "what is believed is far from it";
     for (const char* link : {"room", "mirror"}) {
@@ -253,9 +251,10 @@ TEST_F(Chain, AllThatIsMissingIsMeasuredOneAfterTheOther) {
     window.studio().loop.resume();
     window.click("chain.rest");
     ASSERT_TRUE(eventually([&] { return badge("check") == "Simulated"; }, 300s)) << story();
-    for (const studio::ChainLink& link : studio::chainLinks())
-        if (link.id != studio::LinkId::room)
-            EXPECT_EQ(badge(link.key), link.isWanted ? "Optional" : "Simulated") << link.key << ": " << story();
+    for (const studio::ChainLink& link : studio::chainLinks()) {
+        if (link.id == studio::LinkId::room) continue;
+        EXPECT_EQ(badge(link.key), link.isWanted ? "Optional" : "Simulated") << link.key << ": " << story();
+    }
     EXPECT_EQ(room().servos.size(), window.state().rig.rig->actuatorCount());
     EXPECT_EQ(room().projectors.front().responseCurve.size(), 65U);
     EXPECT_GT(room().projectors.front().black.g, 0.0F);

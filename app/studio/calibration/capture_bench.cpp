@@ -207,29 +207,6 @@ private:
 
 } // namespace
 
-std::optional<double> lightError(const CalibratedCamera& believed, const CalibratedCamera& truth, double side) {
-    constexpr int kSteps = 9;
-    double sum = 0.0;
-    int count = 0;
-    for (int i = 0; i < kSteps; ++i)
-        for (int j = 0; j < kSteps; ++j) {
-            const glm::dvec3 point(side * (i / (kSteps - 1.0) - 0.5), 0.0, side * (j / (kSteps - 1.0) - 0.5));
-            const auto pixel = pixelOf(believed, point);
-            if (!pixel || pixel->x < 0.0 || pixel->y < 0.0 || pixel->x >= believed.size.x ||
-                pixel->y >= believed.size.y)
-                continue;
-            // The pixel that is meant for this point truly lights another.
-            const glm::dvec3 from = positionOf(truth);
-            const glm::dvec3 direction = directionOf(truth, *pixel);
-            if (direction.y > -1e-6) continue;
-            const glm::dvec3 off = from - (from.y / direction.y) * direction - point;
-            sum += glm::dot(off, off);
-            ++count;
-        }
-    if (count == 0) return std::nullopt;
-    return std::sqrt(sum / count);
-}
-
 std::vector<cv::Point3d> cornersOf(const CalibrationBoard& board) {
     const std::vector<cv::Point3d> points = pointsOf(board);
     double right = 0.0, bottom = 0.0;

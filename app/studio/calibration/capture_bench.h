@@ -56,11 +56,6 @@ openCameraBench(const CalibrationSetup& setup, std::shared_ptr<PatternDisplay> d
 /// picture, as a camera of that focal length (pixels) would see them.
 [[nodiscard]] BoardOutline guideOutline(const CalibrationBoard& board, cv::Size camera, double focal, int pose);
 
-/// Root mean square distance, metres, by which light of `believed` lands beside where `truth` puts it, over a square of
-/// `side` metres on the table around the world's origin; empty where neither lights it.
-[[nodiscard]] std::optional<double> lightError(const CalibratedCamera& believed, const CalibratedCamera& truth,
-                                               double side);
-
 /// The four corners of the area that the board's points span, in the board's frame.
 [[nodiscard]] std::vector<cv::Point3d> cornersOf(const CalibrationBoard& board);
 

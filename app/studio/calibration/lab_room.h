@@ -15,12 +15,6 @@
 
 namespace lumorph::studio {
 
-/// What truly stands in the virtual lab whose boxes were unpacked with this seed, which nobody who measures knows: the
-/// same for the same seed and actuators, whatever was measured meanwhile. Projectors and cameras stand where they are
-/// believed to; where the lab's own sequence measured a projector, where that truly has it (labTruth).
-[[nodiscard]] Installation unpackedLab(const Installation& believed, std::span<const Actuator> actuators,
-                                       std::uint32_t seed);
-
 /// The one truth of the virtual lab, by which the chain measures and the simulated trackers see. As long as its boxes
 /// are packed all is as the room is believed to be, so that a show is right from the first start. They are unpacked
 /// when the first link of the chain is measured there; from then on the truth is kept for the machine, until the lab is
