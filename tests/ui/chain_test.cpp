@@ -194,9 +194,10 @@ TEST_F(Chain, TwoProjectorsAndOneInAMirrorAreCalibratedByTheMouse) {
     ASSERT_TRUE(eventually([&] { return window.state().rig.rig && window.studio().jobs.running().empty(); }, 60s));
     EXPECT_FALSE(window.findNow<QWidget>("chain.link.room")) << "one projector is not several";
     studio::editInstallation(window.studio().document, "A projector of few pixels", [](Installation& edited) {
-        CalibratedCamera& lamp = edited.projectors.front().camera;
-        lamp = withSize(lamp, {480, 270});
-        edited.projectors.push_back(edited.projectors.front());
+        InstalledProjector& first = edited.projectors.front();
+        first.lens = first.pose = {Origin::Way::assumed, "of few pixels", ""}; // not entered by anybody
+        first.camera = withSize(first.camera, {480, 270});
+        edited.projectors.push_back(first);
         edited.projectors.back().name = "Side";
     });
     ASSERT_TRUE(eventually([&] { return badge("room") == "Next"; })) << badge("room").toStdString();
