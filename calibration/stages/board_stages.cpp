@@ -101,6 +101,21 @@ StageRecording recordingOf(const MirrorCapture& capture, StageRecording recordin
     return recording;
 }
 
+/// A board in sight shows at least so many points; findBoard gives no fewer.
+constexpr std::size_t kFewestCorners = 4;
+
+void requireSound(const StageRecording& recording, const RecordedTable& table) {
+    if (std::ranges::all_of(table.numbers, [](double number) { return std::isfinite(number); })) return;
+    throw DataError("recording of " + recording.stage, "a number of it is none",
+                    "record the stage again, or take another copy of the folder");
+}
+
+void requireSound(const StageRecording& recording, const BoardPoints& points) {
+    if (points.seen.empty() || points.seen.size() >= kFewestCorners) return;
+    throw DataError("recording of " + recording.stage, "a board in it has fewer than four points",
+                    "record the stage again");
+}
+
 cv::Size sizeIn(std::span<const double> row) {
     constexpr std::size_t kMostPixels = 100'000;
     const cv::Size size(static_cast<int>(stages::indexIn(row[1], kMostPixels, "pixels")),
@@ -126,6 +141,7 @@ ReadBoards boardsOf(const StageRecording& recording) {
     if (devices.names.size() != devices.rows() || poses.names.size() != poses.rows())
         throw DataError("recording of " + recording.stage, "its devices or poses have no names",
                         "record the stage again");
+    for (const RecordedTable* table : {&devices, &poses, &corners, &light}) requireSound(recording, *table);
     for (std::size_t i = 0; i < devices.rows(); ++i)
         (devices.row(i)[0] != 0.0 ? read.projectors : read.cameras)
             .push_back({devices.names[i], sizeIn(devices.row(i))});
@@ -144,6 +160,10 @@ ReadBoards boardsOf(const StageRecording& recording) {
         BoardPoints& points = row[2] != 0.0 ? read.direct[pose] : read.views[pose].corners[camera];
         points.board.emplace_back(row[3], row[4], 0.0);
         points.seen.emplace_back(row[5], row[6]);
+    }
+    for (std::size_t pose = 0; pose < read.views.size(); ++pose) {
+        requireSound(recording, read.direct[pose]);
+        for (const BoardPoints& points : read.views[pose].corners) requireSound(recording, points);
     }
     for (std::size_t i = 0; i < light.rows(); ++i) {
         const auto row = light.row(i);

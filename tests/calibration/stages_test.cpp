@@ -163,6 +163,22 @@ TEST_P(StagesTest, RefuseWhatIsDamagedCutShortOrOfSomethingElseByItsName) {
     EXPECT_THROW((void)solveStage(calibrationStage(key), foreign, room.site), DataError);
 }
 
+TEST(StageRefusals, OfBoardsWithPointsThatAreNoneOrTooFew) {
+    const StageRecording& sound = keptOf("room").measured.recording;
+    const StageRoom room("room", 11);
+    const auto solve = [&](const std::function<void(RecordedTable&)>& spoil, const char* table) {
+        StageRecording spoilt = sound;
+        spoil(spoilt.tables.at(table));
+        (void)solveStage(calibrationStage("room"), spoilt, room.site);
+    };
+    const auto spoilNumber = [](RecordedTable& table) { table.numbers.back() = NAN; };
+    EXPECT_THROW(solve(spoilNumber, "corners"), DataError);
+    EXPECT_THROW(solve(spoilNumber, "light"), DataError);
+    EXPECT_THROW(solve([](RecordedTable& table) { table.numbers.resize(3 * table.columns.size()); }, "corners"),
+                 DataError);
+    EXPECT_THROW(solve([](RecordedTable& table) { table.numbers.front() = 99.0; }, "corners"), DataError);
+}
+
 INSTANTIATE_TEST_SUITE_P(All, StagesTest,
                          ::testing::Values("room", "mirror", "device", "light", "pointer", "tracker", "body", "eye",
                                            "servos", "delays", "verify"),

@@ -21,7 +21,10 @@ ViewCamera camera() {
 
 class RenderThreadTest : public testing::Test {
 protected:
-    void SetUp() override { ASSERT_TRUE(ready.wait() || !ready.isEmpty()); }
+    // The first context of a program takes long in software GL while other programs draw too.
+    void SetUp() override {
+        ASSERT_TRUE(waitFor([this] { return !ready.isEmpty(); }, 60'000));
+    }
 
     // The frame in full quality that answers a request.
     DrawnFrame still(int viewport, FrameRequest request) {

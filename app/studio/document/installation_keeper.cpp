@@ -35,7 +35,7 @@ InstallationKeeper::InstallationKeeper(Settings& settings, StudioDocument& docum
     load();
     writer_ = std::make_unique<InstallationWriter>(
         [store = store_](const Installation& installation) mutable { store.keep(installation); },
-        [this](std::shared_ptr<const Installation> written, std::exception_ptr failure) {
+        [this](std::shared_ptr<const Installation> written, const std::exception_ptr& failure) {
             QMetaObject::invokeMethod(
                 this, [this, written = std::move(written), failure] { takeWritten(written, failure); },
                 Qt::QueuedConnection);
@@ -57,7 +57,7 @@ InstallationKeeper::InstallationKeeper(Settings& settings, StudioDocument& docum
 InstallationKeeper::~InstallationKeeper() {
     if (due_.isActive()) offer();
     writer_.reset();
-    QCoreApplication::sendPostedEvents(this, QEvent::MetaCall); // what it could not write is told
+    QCoreApplication::sendPostedEvents(this, QEvent::MetaCall); // notices of what it could not write
 }
 
 void InstallationKeeper::load() {

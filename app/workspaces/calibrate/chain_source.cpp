@@ -84,7 +84,7 @@ private:
             way_->setSegment(1, link.isMoved ? "Camera and servos" : "Camera and projectors",
                              "What is on the table, as it is connected");
         else
-            way_->setSegment(1, link.isWithTracker() ? "Connected tracker" : "Camera and tracker",
+            way_->setSegment(1, link.isWithTracker() ? "Connected tracker" : "At the table",
                              link.isWithTracker() ? "By touching, step by step, what the studio shows"
                                                   : link.notConnected);
         way_->setChosen(static_cast<int>(wayOf(state, state.chosen)));
