@@ -10,6 +10,7 @@ namespace lumorph {
 double sigmaOf(const std::vector<cv::Point2d>& errors, double freedom) {
     constexpr double kFarthest = 12.0; // standard deviations
     std::vector<double> squares;
+    squares.reserve(errors.size());
     for (const cv::Point2d& error : errors) squares.push_back(error.dot(error));
     if (squares.empty()) return 0.0;
     const auto middle = squares.begin() + static_cast<std::ptrdiff_t>(squares.size() / 2);
