@@ -11,7 +11,8 @@ namespace lumorph {
 
 namespace {
 
-constexpr double kAtRest = 0.5;     // pixels between two pictures: nobody holds a board so still
+constexpr double kAtRest =
+    0.5; // pixels between two pictures: below it the board is at rest; held by hand it moves more
 constexpr double kElsewhere = 0.03; // of the picture's width: another place
 constexpr int kMostRefusals = 3;
 

@@ -29,7 +29,7 @@ namespace lumorph {
 [[nodiscard]] std::optional<double> lightError(const CalibratedCamera& believed, const CalibratedCamera& truth,
                                                double side);
 
-/// What truly stands in the virtual lab whose boxes were unpacked with this seed, which nobody who measures knows: the
+/// Ground truth of the virtual lab for this seed, which measurements do not read: the
 /// same for the same seed and actuators, whatever was measured meanwhile. Projectors and cameras stand where they are
 /// believed to; where the lab's own sequence measured a projector, where that truly has it (labTruth).
 [[nodiscard]] Installation unpackedLab(const Installation& believed, std::span<const Actuator> actuators,

@@ -33,7 +33,7 @@ struct Outliers {
 /// cause that is to be found.
 [[nodiscard]] Outliers outliersOf(const std::vector<cv::Point2d>& errors, double sigma);
 
-/// What a user is told when outliers of `what` ("decoded points") were left out of a view.
+/// The warning about outliers of `what` ("decoded points") that were removed from a view.
 [[nodiscard]] Finding findingOf(const Outliers& outliers, const std::string& what, const std::string& view);
 
 } // namespace lumorph

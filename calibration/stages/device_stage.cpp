@@ -16,7 +16,7 @@
 #include "core/base/error.h"
 
 // Projectors and camera by the device itself, without a board: light on it at rest and with each actuator raised. A
-// recording has how the device was told to stand, and the light that was decoded then. The last stand is held out.
+// recording holds the commanded strokes of each shot and the light that was decoded in it. The last shot is held out.
 
 namespace lumorph {
 
@@ -220,7 +220,7 @@ CalibrationStage stages::deviceStage() {
     CalibrationStage stage;
     stage.key = "device";
     stage.title = "Projectors by the device alone";
-    stage.needs = {"servos"}; // flaps that stand elsewhere than they were told are another device
+    stage.needs = {"servos"}; // the solver needs the true strokes: unmeasured servo curves make the model wrong
     stage.measure = [](const StageSite& site, Bench& bench, const Progress& progress) {
         StageRecording recording = recordShots(site, bench, progress.part(0.0, 0.6));
         StageResult result = solveDeviceAlone(recording, site, progress.part(0.6, 1.0));

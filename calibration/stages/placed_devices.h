@@ -11,7 +11,7 @@
 
 namespace lumorph {
 
-/// How far light lies beside in a pose that was held out before anything was solved.
+/// Reprojection error of light in a pose that was held out before the solve.
 struct HeldOutLight {
     double median = 0.0, most = 0.0;             ///< 50 and 95 of 100 points, metres
     double medianPixels = 0.0, mostPixels = 0.0; ///< the same in the projector
@@ -26,7 +26,7 @@ struct PlacedDevices {
         bool isProjector = false;
         double rms = 0.0;        ///< of what it saw or lit, its own pixels
         double focalSigma = 0.0; ///< pixels
-        double shiftSigma = 0.0; ///< of its place, metres; 0 of the one from which the others are told
+        double shiftSigma = 0.0; ///< of its position, metres; 0 for the reference camera
         HeldOutLight heldOut;    ///< of a projector
     };
     std::vector<Device> devices;

@@ -157,7 +157,7 @@ private:
         InstalledProjector projector = defaultInstallation().projectors.front();
         const auto& all = studio_.document.state().installation->projectors;
         projector.name = "Projector " + std::to_string(all.size() + 1);
-        // Beside the others, so that it is seen to be another; where it truly stands nobody has said.
+        // Beside the others, so that both can be seen. Its pose stays assumed: nothing was measured or entered.
         carryTo(projector.camera,
                 positionOf(projector.camera) + glm::dvec3(0.5 * static_cast<double>(all.size()), 0, 0));
         lookAt(projector.camera, glm::dvec2(0.0));
