@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -45,6 +46,9 @@ public:
 /// itself). Exposure, white balance, focus and gain are fixed where they are, as far as the driver allows. Throws
 /// DeviceError with what to do.
 [[nodiscard]] std::unique_ptr<CaptureCamera> openCaptureCamera(const std::string& path, cv::Size most = {1920, 1080});
+
+/// How cameras are opened, by their addresses; in any thread.
+using CameraOpener = std::function<std::unique_ptr<CaptureCamera>(const std::string& address)>;
 
 /// The virtual lab's; it outlives the camera.
 [[nodiscard]] std::unique_ptr<CaptureCamera> openLabCamera(BoardLab& lab);

@@ -62,6 +62,14 @@ CameraLight::~CameraLight() {
         if (display) display->clear();
 }
 
+void CameraLight::expose(double seconds) {
+    const double wanted = std::clamp(seconds, exposures_.shortest, exposures_.longest);
+    if (wanted == exposure_) return;
+    camera_.setExposure(wanted);
+    exposure_ = wanted;
+    for (int frame = 0; frame < kFramesAfterExposure; ++frame) (void)camera_.grab(progress_);
+}
+
 void CameraLight::show(const LightShow& show) {
     for (std::size_t p = 0; p < displays_.size(); ++p)
         if (displays_[p])
@@ -90,8 +98,10 @@ cv::Mat CameraLight::lightOf(std::size_t projector) {
 
 /// A share of the light, so that noise of dark pixels counts for nothing.
 void CameraLight::waitFor(std::size_t projector, bool covered) {
-    cv::Mat& whole = whole_[projector];
-    if (covered && whole.empty()) whole = lightOf(projector);
+    const auto [found, isFirst] = whole_.try_emplace(projector);
+    auto& [whole, seconds] = found->second;
+    if (isFirst) whole = lightOf(projector), seconds = exposure_;
+    expose(seconds); // else its light is another share of the whole
     const Microseconds begun = clock_->now();
     for (int looks = 0;; ++looks) {
         progress_.report(-1.0, (covered ? "cover the lens of " : "uncover the lens of ") + names_.at(projector));
@@ -105,14 +115,10 @@ void CameraLight::waitFor(std::size_t projector, bool covered) {
 }
 
 cv::Mat CameraLight::photograph(const LightShow& colors, double seconds) {
-    const double wanted = std::clamp(seconds, exposures_.shortest, exposures_.longest);
-    if (wanted != exposure_) {
-        camera_.setExposure(wanted);
-        exposure_ = wanted;
-        for (int frame = 0; frame < kFramesAfterExposure; ++frame) (void)camera_.grab(progress_);
-    }
+    expose(seconds);
     for (std::size_t p = 0; p < displays_.size(); ++p)
         if (displays_[p] && covered_[p] == colors.at(p).has_value()) waitFor(p, !colors[p].has_value());
+    expose(seconds);
     show(colors);
     return look();
 }

@@ -27,6 +27,7 @@ public:
     [[nodiscard]] double longestExposure() const override { return exposures_.longest; }
 
 private:
+    void expose(double seconds);
     void show(const LightShow& show);
     [[nodiscard]] cv::Mat look();
     [[nodiscard]] cv::Mat lightOf(std::size_t projector);
@@ -41,7 +42,11 @@ private:
     Microseconds settle_{0};
     double exposure_ = 0.0;
     std::vector<bool> covered_;
-    std::map<std::size_t, cv::Mat> whole_; ///< what each projector's white adds, uncovered
+    struct Whole {
+        cv::Mat light;
+        double seconds = 0.0; ///< exposed for
+    };
+    std::map<std::size_t, Whole> whole_; ///< what each projector's white adds, uncovered
 };
 
 } // namespace lumorph

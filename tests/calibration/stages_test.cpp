@@ -463,6 +463,34 @@ TEST(StageAtTheTable, BoardsAreNoticedAsTheyAreLaidAndAPushedOneIsTakenAgain) {
     EXPECT_EQ(places.room.projectors.front().pose.way, Origin::Way::measured);
 }
 
+TEST(StageAtTheTable, ALensThatIsUncoveredIsSeenAtAnyExposure) {
+    const StageRoom room("light", 23);
+    LightLabOptions options;
+    options.laysSheet = false;
+    LightLab lab(room.truth, *room.site.rig, lightLabCamera(room.truth, options), std::nullopt, options, 23);
+    LightTable table{lab};
+    LightCamera camera(table);
+    LightScreen screen(table);
+    std::string asked;
+    const Progress hands([&](double, std::string_view stage) {
+        if (stage.starts_with("cover")) table.isCovered = true;
+        if (stage.starts_with("uncover")) table.isCovered = false;
+        asked = stage;
+    });
+    CameraLight light(camera, {&screen}, {"Projector"}, hands, table.clock);
+    const LightShow white{glm::ivec3(255)};
+    (void)light.photograph(white, 1.0 / 60.0);
+    EXPECT_EQ(asked.find("cover"), std::string::npos) << asked;
+    (void)light.photograph({std::nullopt}, 0.25);
+    EXPECT_TRUE(asked.starts_with("cover the lens")) << asked;
+    EXPECT_TRUE(table.isCovered);
+    (void)light.photograph(white, 1.0 / 500.0);
+    EXPECT_TRUE(asked.starts_with("uncover the lens")) << asked;
+    EXPECT_EQ(table.seconds, 1.0 / 500.0);
+    (void)light.photograph({std::nullopt}, 1.0 / 250.0);
+    EXPECT_TRUE(table.isCovered);
+}
+
 TEST(StageAtTheTable, LightIsMeasuredByACameraWithoutColour) {
     const StageRoom room("light", 31);
     LightLabOptions options;

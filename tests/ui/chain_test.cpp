@@ -20,6 +20,7 @@
 #include "tests/support/chain_judge.h"
 #include "tests/support/cut_tablet.h"
 #include "tests/support/truth.h"
+#include "tests/ui/chain_hand.h"
 #include "tests/ui/file_dialog.h"
 #include "tests/ui/studio_window.h"
 
@@ -64,28 +65,9 @@ void writePointer(const PointerCapture& capture, const std::filesystem::path& sw
         }
 }
 
-class Chain : public ::testing::Test {
+class Chain : public ::testing::Test, protected ChainHand {
 protected:
-    Chain() {
-        window.window().showWorkspace("calibrate");
-        window.click("calibrate.whole");
-    }
-    [[nodiscard]] QString badge(const QString& link) { return window.text("chain.link." + link + ".how"); }
-    [[nodiscard]] QString button() {
-        const auto* next = window.findNow<QAbstractButton>("chain.card.next");
-        return next ? next->text() : QString();
-    }
-    [[nodiscard]] bool offers(const QString& words) {
-        return eventually([&] { return button() == words; }, 120s);
-    }
-    void next() {
-        pass(std::chrono::milliseconds(QApplication::doubleClickInterval() + 50));
-        window.click("chain.card.next");
-    }
-    [[nodiscard]] const Installation& room() { return *window.state().installation; }
-    [[nodiscard]] std::string story() {
-        return (window.text("chain.card.title") + ": " + window.text("chain.card.text")).toStdString();
-    }
+    Chain() : ChainHand(window) { open(); }
 
     /// Servos whose lag is shown as a figure.
     [[nodiscard]] QStringList lagFigures() {

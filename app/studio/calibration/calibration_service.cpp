@@ -96,8 +96,9 @@ private:
 };
 
 CalibrationService::CalibrationService(Settings& settings, StudioDocument& document, Jobs& jobs, Notices& notices,
-                                       DisplayOpener openDisplay, VersionTaker take, QObject* parent)
-    : QObject(parent), settings_(settings), document_(document), notices_(notices),
+                                       CameraOpener openCamera, DisplayOpener openDisplay, VersionTaker take,
+                                       QObject* parent)
+    : QObject(parent), settings_(settings), document_(document), notices_(notices), openCamera_(std::move(openCamera)),
       openDisplay_(std::move(openDisplay)), take_(std::move(take)), jobs_(*this, jobs, notices),
       liveTimer_(new QTimer(this)), looker_(std::make_unique<Looker>()) {
     state_.setup = keptSetup(settings, keptWay(settings));
@@ -362,9 +363,9 @@ void CalibrationService::openBench() {
     const int attempt = ++benchTry_;
     jobs_.runWith<std::shared_ptr<CaptureBench>>(
         "open", kPlace, setup.way == CaptureWay::lab ? tr("Setting up the lab") : tr("Opening the camera"),
-        [setup, room, display](const Progress& progress) {
+        [setup, room, display, open = openCamera_](const Progress& progress) {
             return setup.way == CaptureWay::lab ? openLabBench(setup, *room, progress)
-                                                : openCameraBench(setup, display, progress);
+                                                : openCameraBench(setup, open, display, progress);
         },
         [this, attempt](std::shared_ptr<CaptureBench> bench) {
             if (attempt != benchTry_) return;

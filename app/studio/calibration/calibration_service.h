@@ -49,7 +49,8 @@ public:
     using VersionTaker = std::function<bool(const CalibrationState& state, const Installation& installation)>;
 
     CalibrationService(Settings& settings, StudioDocument& document, Jobs& jobs, Notices& notices,
-                       DisplayOpener openDisplay, VersionTaker take, QObject* parent = nullptr);
+                       CameraOpener openCamera, DisplayOpener openDisplay, VersionTaker take,
+                       QObject* parent = nullptr);
     ~CalibrationService() override;
 
     [[nodiscard]] const CalibrationState& state() const noexcept { return state_; }
@@ -117,6 +118,7 @@ private:
     Settings& settings_;
     StudioDocument& document_;
     Notices& notices_;
+    CameraOpener openCamera_;
     DisplayOpener openDisplay_;
     VersionTaker take_;
     CalibrationState state_;

@@ -160,8 +160,8 @@ private:
 
 class CameraBench final : public CaptureBench {
 public:
-    CameraBench(const CalibrationSetup& setup, std::shared_ptr<PatternDisplay> display)
-        : setup_(setup), display_(std::move(display)), camera_(openCaptureCamera(setup.camera)) {}
+    CameraBench(const CalibrationSetup& setup, const CameraOpener& open, std::shared_ptr<PatternDisplay> display)
+        : setup_(setup), display_(std::move(display)), camera_(open(setup.camera)) {}
 
     [[nodiscard]] CapturedPose capture(int pose, const std::function<void(const Shot&)>& onShot,
                                        const Progress& progress) override {
@@ -254,10 +254,10 @@ std::shared_ptr<CaptureBench> openLabBench(const CalibrationSetup& setup, const 
     return std::make_shared<LabBench>(setup, room);
 }
 
-std::shared_ptr<CaptureBench> openCameraBench(const CalibrationSetup& setup, std::shared_ptr<PatternDisplay> display,
-                                              const Progress& progress) {
+std::shared_ptr<CaptureBench> openCameraBench(const CalibrationSetup& setup, const CameraOpener& open,
+                                              std::shared_ptr<PatternDisplay> display, const Progress& progress) {
     progress.report(0.1, "opening the camera");
-    return std::make_shared<CameraBench>(setup, std::move(display));
+    return std::make_shared<CameraBench>(setup, open, std::move(display));
 }
 
 } // namespace lumorph::studio

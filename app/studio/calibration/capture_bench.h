@@ -49,8 +49,9 @@ public:
                                                          const Progress& progress = {});
 
 /// A camera of this machine, and whatever shows the patterns. Throws DeviceError with what to do.
-[[nodiscard]] std::shared_ptr<CaptureBench>
-openCameraBench(const CalibrationSetup& setup, std::shared_ptr<PatternDisplay> display, const Progress& progress = {});
+[[nodiscard]] std::shared_ptr<CaptureBench> openCameraBench(const CalibrationSetup& setup, const CameraOpener& open,
+                                                            std::shared_ptr<PatternDisplay> display,
+                                                            const Progress& progress = {});
 
 /// Outlines of poses that together tell a camera well: flat first, then tilted to all sides and spread over the
 /// picture, as a camera of that focal length (pixels) would see them.

@@ -21,7 +21,7 @@ struct TableParts {
     /// In the window's thread.
     std::function<std::unique_ptr<PatternDisplay>(std::size_t projector)> openDisplay;
     /// In the thread that measures; the address is the room's, such as "/dev/video0".
-    std::function<std::unique_ptr<CaptureCamera>(const std::string& address)> openCamera;
+    CameraOpener openCamera;
     /// By which pictures take time to be seen.
     std::shared_ptr<const Clock> clock = std::make_shared<SteadyClock>();
     std::string board = "chess:9x7:25"; ///< the printed board, millimetres

@@ -1,5 +1,9 @@
 #pragma once
 
+#include <functional>
+#include <memory>
+#include <string>
+
 #include "app/studio/base/commands.h"
 #include "app/studio/base/jobs.h"
 #include "app/studio/base/notices.h"
@@ -21,6 +25,10 @@
 #include "app/studio/rendering/show_feed.h"
 #include "app/studio/shell/driver_control.h"
 #include "app/studio/sound/sound_service.h"
+
+namespace lumorph {
+class CaptureCamera;
+}
 
 namespace lumorph::studio {
 
@@ -47,6 +55,8 @@ struct Studio {
     SoundService sound{settings, loop};
     GamepadService gamepads{loop};
     KeepsakeKeeper keepsakes{loop, notices};
+    /// Cameras that calibrate, by their addresses, in any thread; empty: those of this machine.
+    std::function<std::unique_ptr<CaptureCamera>(const std::string& address)> openCamera;
 };
 
 } // namespace lumorph::studio

@@ -40,10 +40,15 @@ CalibrationService::DisplayOpener displayOpener(Studio& studio) {
     };
 }
 
+CameraOpener cameraOpener(Studio& studio) {
+    return [&studio](const std::string& address) {
+        return studio.openCamera ? studio.openCamera(address) : openCaptureCamera(address);
+    };
+}
+
 ChainService::TableOpener tableOpener(Studio& studio) {
     return [&studio](const Installation& room, bool isMoved) {
-        TableParts parts{&studio.devices, displayOpener(studio),
-                         [](const std::string& address) { return openCaptureCamera(address); }};
+        TableParts parts{&studio.devices, displayOpener(studio), cameraOpener(studio)};
         parts.board = boardText(keptSetup(studio.settings, CaptureWay::camera).board);
         return openTable(parts, room, isMoved);
     };
@@ -74,8 +79,8 @@ CrosshairService::Shower crosshairShower(Studio& studio) {
 } // namespace
 
 CalibrateWorkspace::CalibrateWorkspace(Studio& studio)
-    : studio_(studio), service_(studio.settings, studio.document, studio.jobs, studio.notices, displayOpener(studio),
-                                versionTaker(studio)),
+    : studio_(studio), service_(studio.settings, studio.document, studio.jobs, studio.notices, cameraOpener(studio),
+                                displayOpener(studio), versionTaker(studio)),
       crosshairs_(studio.document, crosshairShower(studio),
                   [&studio](const InstallationVersion& version) { return studio.room.takeVersion(version); }),
       live_(studio.trackers, [show = crosshairShower(studio)](const QImage& picture) { show(0, picture); }),
