@@ -162,7 +162,8 @@ ProjectorShots LightMeasurement::shotsOf(std::size_t projector, const Progress& 
     shots.projector = projector;
     LightShow show = showing(glm::ivec3(0));
     show[projector].reset();
-    progress.report(0.0, "cover the lens of " + believed_.projectors[projector].name + " for a moment");
+    // To cover the lens is asked by the bench, once it knows how bright it is uncovered.
+    progress.report(0.0, "photographing black of " + believed_.projectors[projector].name);
     shots.covered = series_.take(show);
     show[projector] = glm::ivec3(0);
     shots.dark = series_.take(show);

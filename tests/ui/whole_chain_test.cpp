@@ -280,7 +280,7 @@ protected:
         ASSERT_TRUE(eventually([&] { return chain.badge(link) == badge; })) << link << ": " << chain.story();
     }
 
-    TemporaryFolder poses; ///< photographed ones
+    TemporaryFolder saved; ///< photographed ones
     std::shared_ptr<SeenTable> table = std::make_shared<SeenTable>();
     ChainHand chain{window};
 };
@@ -411,7 +411,7 @@ TEST_F(WholeChainAtTheTable, IsMeasuredByTheMouseAsFarAsDevicesAreSimulated) {
     setup.way = studio::CaptureWay::camera;
     setup.board = parseCalibrationBoard(kBoard);
     setup.camera = "/dev/video9";
-    setup.saved = poses.path();
+    setup.saved = saved.path();
     studio::keepSetup(window.studio().settings, setup);
     ASSERT_NO_FATAL_FAILURE(goLive());
     chain.open();
