@@ -10,6 +10,7 @@
 #include "calibration/lab/boards_lab.h"
 #include "calibration/lab/moved_room.h"
 #include "calibration/stages/lab_bench.h"
+#include "calibration/stages/session.h"
 #include "calibration/verify/check_picture.h"
 #include "core/base/error.h"
 #include "core/base/image.h"
@@ -17,7 +18,7 @@
 #include "core/show/project_contents.h"
 
 // The stages of a calibration, one command each: recorded in the virtual lab or at the table, or solved from a
-// recording. Some also read a folder of pictures, for which no project is needed.
+// recording. Some also read a folder of pictures, for which no project is needed. Then all in turn, and how they stand.
 
 namespace lumorph::cli {
 
@@ -26,6 +27,7 @@ namespace {
 struct StageArguments {
     std::string project, from, record, fault;
     bool inLab = false, atTable = false, json = false;
+    bool inTurn = false; ///< one lab for all stages, so that a check looks at what the others measured
     std::uint32_t seed = 1;
     LabApply apply;
     // Of single stages:
@@ -97,7 +99,8 @@ public:
 
 Installation trueRoomOf(const StageArguments& arguments, const CalibrationStage& stage, const StageSite& site) {
     const std::string_view key = stage.key;
-    if (key != "verify" && key != "device") return unpackedLab(site.room, site.rig->actuators(), arguments.seed);
+    if (arguments.inTurn || (key != "verify" && key != "device"))
+        return unpackedLab(site.room, site.rig->actuators(), arguments.seed);
     // A check asks what has moved since, and by the device only what is known can be measured: else all is as it was.
     Installation truth = withLabCamera(site.room);
     std::uint32_t seed = arguments.seed;
@@ -106,8 +109,9 @@ Installation trueRoomOf(const StageArguments& arguments, const CalibrationStage&
     return truth;
 }
 
-MeasuredStage measured(const StageArguments& arguments, const CalibrationStage& stage, const StageSite& site,
+MeasuredStage measured(const StageArguments& arguments, const CalibrationStage& stage, StageSite site,
                        const Progress& progress) {
+    if (stage.key == std::string_view("light")) site.room = withoutLight(site.room);
     if (!arguments.from.empty()) {
         StageRecording recording = readStageRecording(arguments.from, progress.part(0.0, 0.1));
         StageResult result = solveStage(stage, recording, site, progress.part(0.1, 1.0));
@@ -137,30 +141,36 @@ std::vector<LibraryTarget> shapesFor(const ProjectContents& contents) {
         {resourceFile("targets/bowl.glb"), resourceFile("targets/cove.glb"), resourceFile("targets/valley.glb")});
 }
 
-StageView viewOf(const ProjectContents& contents, const MeasuredStage& done, const Progress& progress) {
+StageView viewOf(const ProjectContents& contents, const StageOutcome& done, const Progress& progress) {
     StageView view{*contents.rig, std::nullopt};
     const auto* servos = std::get_if<ServoMeasurement>(&done.result);
-    if (!servos || !done.recording.truth) return view;
+    if (!servos || !done.recording->truth) return view;
     LibraryFitOptions fitting;
     fitting.resolution = 25;
     view.servoGain =
-        servoGain(*contents.rig, shapesFor(contents), servos->room, *done.recording.truth, fitting, progress);
+        servoGain(*contents.rig, shapesFor(contents), servos->room, *done.recording->truth, fitting, progress);
     return view;
 }
 
-const char* wayOf(const StageArguments& arguments, const RecordingSource& source) {
-    return source.isSimulated() ? "simulated" : arguments.from.empty() ? "measured" : "recorded";
+const char* wayOf(const StageArguments& arguments, const StageOutcome& done) {
+    return done.isSimulated ? "simulated" : arguments.from.empty() ? "measured" : "recorded";
 }
 
-/// Whether the room is another now. A check that cannot tell what has moved changes nothing.
-bool applyTo(const CalibrationStage& stage, const StageResult& result, Installation& room) {
-    if (const auto* check = std::get_if<VerifiedRoom>(&result)) {
-        if (check->check.verdict != RoomCheck::Verdict::moved || !check->check.couldAlsoBe.empty()) return false;
-    } else if (!isGood(result)) {
-        return false;
-    }
-    stage.apply(roomOf(result), room);
-    return true;
+/// Before anything takes long. Throws InvalidInput.
+void checkRecord(const std::string& folder) {
+    std::error_code error;
+    if (std::filesystem::exists(folder, error) && !std::filesystem::is_empty(folder, error))
+        throw InvalidInput("--record " + folder, "is there already and not an empty folder",
+                           "name a new folder, or empty this one");
+}
+
+/// Measures a stage of a project's room, and keeps the recording where that is asked for.
+StageOutcome measuredIn(const Installation& room, const StageArguments& arguments, const CalibrationStage& stage,
+                        const std::shared_ptr<const Rig>& rig, const Progress& progress) {
+    MeasuredStage done = measured(arguments, stage, {rig, room}, progress.part(0.0, 0.97));
+    if (done.recording.source.isSimulated()) arguments.apply.checkRoom(arguments.project, room);
+    if (!arguments.record.empty()) writeStageRecording(done.recording, arguments.record, progress.part(0.97, 1.0));
+    return outcomeOf(std::move(done), room);
 }
 
 void run(const StageArguments& arguments, const CalibrationStage& stage, const Session& session) {
@@ -168,53 +178,190 @@ void run(const StageArguments& arguments, const CalibrationStage& stage, const S
     arguments.apply.checkProject(arguments.project);
     for (const std::string& output : {arguments.picture, arguments.grid})
         if (!output.empty()) checkOutput(output, file.string());
-    std::error_code error;
-    if (std::filesystem::exists(arguments.record, error) && !std::filesystem::is_empty(arguments.record, error))
-        throw InvalidInput("--record " + arguments.record, "is there already and not an empty folder",
-                           "name a new folder, or empty this one");
+    checkRecord(arguments.record);
     (void)labWithFault(stage.key, arguments.fault);
     const Progress progress = session.progress();
     const ProjectContents contents = readContents(file, progress.part(0.0, 0.1));
-    StageSite site{contents.rig, contents.project.installation};
-    if (stage.key == std::string_view("light")) site.room = withoutLight(site.room);
+    Project project = contents.project;
     if (arguments.from.empty() && !arguments.atTable)
-        arguments.apply.checkRoom(arguments.project, contents.project.installation);
-    const MeasuredStage done =
-        orRefused(arguments.json, [&] { return measured(arguments, stage, site, progress.part(0.1, 0.9)); });
-    if (done.recording.source.isSimulated())
-        arguments.apply.checkRoom(arguments.project, contents.project.installation);
-    if (!arguments.record.empty()) writeStageRecording(done.recording, arguments.record, progress.part(0.9, 0.92));
+        arguments.apply.checkRoom(arguments.project, project.installation);
+    const StageOutcome done = orRefused(arguments.json, [&] {
+        return measuredIn(project.installation, arguments, stage, contents.rig, progress.part(0.1, 0.92));
+    });
     const StageView view = viewOf(contents, done, progress.part(0.92, 1.0));
     Session::endProgress();
     const auto* check = std::get_if<VerifiedRoom>(&done.result);
     if (check) {
-        const Installation seen = withLabCamera(site.room);
-        const std::vector<double> bend = checkBends(*site.rig).front();
-        if (!arguments.picture.empty()) writePng(errorPicture(check->check, *site.rig, seen, bend), arguments.picture);
-        if (!arguments.grid.empty()) writePng(gridPicture(*site.rig, seen, bend), arguments.grid);
+        const Rig& rig = *contents.rig;
+        const Installation seen = withLabCamera(project.installation);
+        const std::vector<double> bend = checkBends(rig).front();
+        if (!arguments.picture.empty()) writePng(errorPicture(check->check, rig, seen, bend), arguments.picture);
+        if (!arguments.grid.empty()) writePng(gridPicture(rig, seen, bend), arguments.grid);
     }
-    Project project = contents.project;
-    const bool isApplied = arguments.apply.apply && applyTo(stage, done.result, project.installation);
-    if (isApplied) writeProject(project, file);
+    const bool isApplied = arguments.apply.apply && done.changesRoom && (done.isGood || check);
+    if (isApplied) {
+        stage.apply(roomOf(done.result), project.installation);
+        writeProject(project, file);
+    }
     const std::optional<Finding> refusal = refusalOf(done.result);
     if (arguments.json) {
         nlohmann::json json = jsonOf(done.result, view);
         json["applied"] = isApplied;
-        json["way"] = wayOf(arguments, done.recording.source);
+        json["way"] = wayOf(arguments, done);
         if (refusal) json["refused"] = jsonOf(*refusal);
         printJson(json);
     } else if (!refusal) {
         printResult(done.result, view);
-        if (isApplied)
-            std::printf("The project's installation has it now, as %s.\n", wayOf(arguments, done.recording.source));
+        if (isApplied) std::printf("The project's installation has it now, as %s.\n", wayOf(arguments, done));
     }
     if (refusal) throw CaptureRefused(*refusal);
     if (check && check->check.verdict == RoomCheck::Verdict::none)
         throw DataError("check of the room", check->check.obstacle->why, check->check.obstacle->remedy);
 }
 
+nlohmann::json standsJson(const CalibrationSession& chain) {
+    nlohmann::json stages = nlohmann::json::array(), next;
+    for (std::size_t k = 0; k < chain.stands().size(); ++k) {
+        const CalibrationStage& stage = calibrationStages()[k];
+        const StageStand& stand = chain.stands()[k];
+        stages.push_back({{"stage", stage.key}, {"title", stage.title}, {"how", keyOf(stand.how)}});
+        stages.back()["other"] = stand.other ? nlohmann::json(calibrationStages()[*stand.other].key) : nlohmann::json();
+        stages.back()["words"] = standText(stand);
+    }
+    if (const auto k = chain.next())
+        next = {{"stage", calibrationStages()[*k].key}, {"why", whyNext(*k, chain.stands()[*k])}};
+    return {{"stages", std::move(stages)}, {"next", std::move(next)}};
+}
+
+void printStands(const CalibrationSession& chain) {
+    for (std::size_t k = 0; k < chain.stands().size(); ++k)
+        std::printf("%-10s %-36s %-10s %s\n", calibrationStages()[k].key, calibrationStages()[k].title,
+                    keyOf(chain.stands()[k].how), standText(chain.stands()[k]).c_str());
+    if (const auto k = chain.next())
+        std::printf("next: %s, %s\n", calibrationStages()[*k].key, whyNext(*k, chain.stands()[*k]).c_str());
+    else
+        std::printf("next: nothing, all is measured\n");
+}
+
+/// Measures the stage whose turn it is, and takes it into the project's room. Throws where it is not good.
+void takeTurn(CalibrationSession& chain, std::size_t place, const StageArguments& arguments,
+              const ProjectContents& contents, Project& project, nlohmann::json& results, const Progress& progress) {
+    const CalibrationStage& stage = calibrationStages()[place];
+    Installation& room = project.installation;
+    StageArguments own = arguments;
+    for (std::string* folder : {&own.from, &own.record})
+        if (!folder->empty()) *folder = (std::filesystem::path(*folder) / stage.key).string();
+    if (!arguments.record.empty()) std::filesystem::create_directories(arguments.record);
+    chain.begin(place);
+    StageOutcome outcome = measuredIn(room, own, stage, contents.rig, progress);
+    Session::endProgress();
+    const StageView view{*contents.rig, std::nullopt};
+    const std::optional<Finding> refusal = refusalOf(outcome.result);
+    results.push_back({{"stage", stage.key},
+                       {"way", wayOf(arguments, outcome)},
+                       {"good", outcome.isGood},
+                       {"result", jsonOf(outcome.result, view)}});
+    if (!arguments.json) std::printf("%s: %s\n", stage.key, stage.title);
+    if (!arguments.json && !refusal) printResult(outcome.result, view);
+    if (auto doubted = chain.take(place, std::move(outcome), room)) room = std::move(*doubted);
+    if (refusal) throw CaptureRefused(*refusal);
+    const StageOutcome& done = *chain.outcomeAt(place);
+    if (!done.isGood)
+        throw DataError(stage.title, "what came of it is not to be trusted, or something has moved",
+                        "look at its figures");
+    if (done.changesRoom) stage.apply(roomOf(done.result), room);
+}
+
+void measureAll(const StageArguments& arguments, const Session& session) {
+    const std::filesystem::path file = projectFile(arguments.project);
+    arguments.apply.checkProject(arguments.project);
+    checkRecord(arguments.record);
+    const Progress progress = session.progress();
+    const ProjectContents contents = readContents(file, progress.part(0.0, 0.05));
+    Project project = contents.project;
+    if (arguments.from.empty()) arguments.apply.checkRoom(arguments.project, project.installation);
+    CalibrationSession chain;
+    chain.follow(project.installation);
+    chain.measureRest();
+    nlohmann::json results = nlohmann::json::array(), ended;
+    std::optional<std::size_t> place;
+    std::string why;
+    while (const auto turn = chain.nextOfRest()) {
+        // Boards measure one projector as they measure several.
+        place = calibrationStages()[*turn].hasSequence() ? placeOfStage("room") : *turn;
+        const double each = 0.95 / static_cast<double>(chain.stands().size());
+        const double from = 0.05 + each * static_cast<double>(*turn);
+        try {
+            takeTurn(chain, *place, arguments, contents, project, results, progress.part(from, from + each));
+        } catch (const Cancelled&) {
+            throw;
+        } catch (const std::exception& error) {
+            why = error.what();
+            chain.fail(*place, why);
+        }
+        chain.follow(project.installation);
+        if (arguments.apply.apply) writeProject(project, file);
+    }
+    if (const auto next = chain.next(); next && why.empty()) {
+        place = next;
+        why = "it was measured, and still: " + whyNext(*next, chain.stands()[*next]);
+    }
+    if (!why.empty()) ended = {{"stage", calibrationStages()[place.value()].key}, {"why", why}};
+    if (arguments.json) {
+        nlohmann::json json = standsJson(chain);
+        json["measured"] = std::move(results);
+        json["applied"] = arguments.apply.apply;
+        json["ended"] = std::move(ended);
+        printJson(json);
+    } else {
+        printStands(chain);
+    }
+    if (!why.empty())
+        throw DataError("stage " + std::string(calibrationStages()[*place].key), why,
+                        "set that right, then go on: what was good before it is not measured again");
+}
+
 /// Else it is a folder of pictures.
 bool isProject(const std::string& text) { return text.starts_with("resource:") || text.ends_with(".lumorph"); }
+
+struct Ways {
+    CLI::Option *lab, *from;
+};
+
+/// Where stages are recorded, and what becomes of it.
+Ways addWays(CLI::App& command, StageArguments& arguments) {
+    CLI::Option* lab = command.add_flag("--lab", arguments.inLab, "Record in the virtual lab; as without a way");
+    CLI::Option* from =
+        command.add_option("--from", arguments.from, "Solve a recording: a folder that --record or the studio wrote");
+    lab->excludes(from);
+    command.add_option("--seed", arguments.seed, "Another lab and other noise for another number")->excludes(from);
+    command.add_option("--record", arguments.record, "Keep what devices said in a new folder, to solve it again");
+    arguments.apply.addTo(command, "Write what it came to into the project's installation");
+    command.add_flag("--json", arguments.json, "Print one JSON value");
+    return {lab, from};
+}
+
+void addAll(CLI::App& group, Session& session) {
+    auto arguments = std::make_shared<StageArguments>();
+    arguments->inTurn = true;
+    CLI::App* command = group.add_subcommand(
+        "all",
+        "All that is missing or stale in turn, each in its own folder of --record or --from; ends with the first "
+        "that is not good");
+    command->add_option("project", arguments->project, "A project, or resource:projects/NAME.lumorph")->required();
+    addWays(*command, *arguments);
+    command->callback([arguments, &session] { measureAll(*arguments, session); });
+    auto asked = std::make_shared<StageArguments>();
+    command = group.add_subcommand("status", "How each stage stands in a project's room, and which is next");
+    command->add_option("project", asked->project, "A project, or resource:projects/NAME.lumorph")->required();
+    command->add_flag("--json", asked->json, "Print one JSON value");
+    command->callback([asked] {
+        CalibrationSession chain;
+        chain.follow(readProject(projectFile(asked->project)).installation);
+        if (asked->json) return printJson(standsJson(chain));
+        printStands(chain);
+    });
+}
 
 void addStage(CLI::App& group, const StageHelp& help, Session& session) {
     auto arguments = std::make_shared<StageArguments>();
@@ -228,23 +375,16 @@ void addStage(CLI::App& group, const StageHelp& help, Session& session) {
                                       "guide's chapter on the command line has it"
                                     : "A project, or resource:projects/NAME.lumorph")
         ->required();
-    CLI::Option* lab = command->add_flag("--lab", arguments->inLab, "Record in the virtual lab; as without a way");
+    const auto [lab, from] = addWays(*command, *arguments);
     CLI::Option* table =
         command->add_flag("--table", arguments->atTable, "Record with what is connected to this machine");
-    CLI::Option* from =
-        command->add_option("--from", arguments->from, "Solve a recording: a folder that --record or the studio wrote");
-    lab->excludes(table)->excludes(from);
-    table->excludes(from);
-    command->add_option("--seed", arguments->seed, "Another lab and other noise for another number")
-        ->excludes(table)
-        ->excludes(from);
+    table->excludes(lab)->excludes(from)->excludes(command->get_option("--seed"));
     if (!help.faults || *help.faults != 0)
         command
             ->add_option("--fault", arguments->fault,
                          "What is wrong in the lab: " + (help.faults ? std::string(help.faults) : trackerFaultKeys()))
             ->excludes(table)
             ->excludes(from);
-    command->add_option("--record", arguments->record, "Keep what devices said in a new folder, to solve it again");
     if (key == "light")
         command->add_flag("--without-sheet", arguments->withoutSheet, "No sheet of white paper lies beside the device")
             ->excludes(table)
@@ -263,8 +403,6 @@ void addStage(CLI::App& group, const StageHelp& help, Session& session) {
         command->add_option("--grid", arguments->grid,
                             "Draw what the projector shows to check by eye into a PNG file: crosshairs and lines");
     }
-    arguments->apply.addTo(*command, "Write what it came to into the project's installation");
-    command->add_flag("--json", arguments->json, "Print one JSON value");
     command->callback([arguments, key, readFolder, &session] {
         if (readFolder && !isProject(arguments->project)) return readFolder(arguments->project, arguments->json);
         run(*arguments, calibrationStage(key), session);
@@ -275,6 +413,7 @@ void addStage(CLI::App& group, const StageHelp& help, Session& session) {
 
 void addCalibrateStages(CLI::App& group, Session& session) {
     for (const StageHelp& help : kHelp) addStage(group, help, session);
+    addAll(group, session);
 }
 
 } // namespace lumorph::cli

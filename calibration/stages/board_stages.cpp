@@ -402,6 +402,9 @@ CalibrationStage roomStage() {
     CalibrationStage stage;
     stage.key = "room";
     stage.title = "All projectors and cameras";
+    stage.isWanted = [](const Installation& room) {
+        return std::ranges::count_if(room.projectors, &InstalledProjector::enabled) > 1 || room.cameras.size() > 1;
+    };
     stage.measure = [](const StageSite& site, Bench& bench, const Progress& progress) {
         const auto capture = bench.recordBoards(site, progress.part(0.0, 0.8));
         return solvedBoards(recordingOf(capture, stages::emptyRecording("room", site, bench)), calibrationStage("room"),
@@ -427,6 +430,7 @@ CalibrationStage mirrorStage() {
     CalibrationStage stage;
     stage.key = "mirror";
     stage.title = "Projector in a mirror";
+    stage.isWanted = isNeverWanted;
     stage.measure = [](const StageSite& site, Bench& bench, const Progress& progress) {
         const auto capture = bench.recordMirror(site, progress.part(0.0, 0.8));
         return solvedBoards(recordingOf(capture, stages::emptyRecording("mirror", site, bench)),

@@ -221,6 +221,7 @@ CalibrationStage stages::deviceStage() {
     stage.key = "device";
     stage.title = "Projectors by the device alone";
     stage.needs = {"servos"}; // the solver needs the true strokes: unmeasured servo curves make the model wrong
+    stage.isWanted = isNeverWanted;
     stage.measure = [](const StageSite& site, Bench& bench, const Progress& progress) {
         StageRecording recording = recordShots(site, bench, progress.part(0.0, 0.6));
         StageResult result = solveDeviceAlone(recording, site, progress.part(0.6, 1.0));

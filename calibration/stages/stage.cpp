@@ -5,6 +5,7 @@
 #include <string>
 #include <utility>
 
+#include "calibration/lab/board_lab.h"
 #include "calibration/stages/stage_rows.h"
 #include "core/base/error.h"
 
@@ -23,6 +24,23 @@ Installation& roomIn(StageResult& result) {
                                  [](MeasuredDelays& of) -> Installation& { return of.installation; },
                                  [](VerifiedRoom& of) -> Installation& { return of.installation; }},
                       result);
+}
+
+/// The sequence of one projector and camera, as a stage that others build on.
+CalibrationStage projectorStage() {
+    CalibrationStage stage;
+    stage.key = "projector";
+    stage.title = "Projector and camera";
+    stage.origin = [](const Installation& room) -> const Origin* {
+        return room.projectors.empty() ? nullptr : &room.projectors.front().lens;
+    };
+    return stage;
+}
+
+void refuseSequence(const CalibrationStage& stage) {
+    if (stage.hasSequence())
+        throw InvalidInput("stage \"" + std::string(stage.key) + "\"", "it has a sequence of its own",
+                           "measure it in the studio, or the stage room in its place");
 }
 
 /// Says in the origins of what was measured who said it.
@@ -61,23 +79,26 @@ std::optional<Finding> refusalOf(const StageResult& result) {
 
 const std::vector<CalibrationStage>& calibrationStages() {
     static const std::vector<CalibrationStage> rows{
-        stages::roomStage(),    stages::mirrorStage(),  stages::deviceStage(), stages::lightStage(),
-        stages::pointerStage(), stages::trackerStage(), stages::bodyStage(),   stages::eyeStage(),
-        stages::servosStage(),  stages::delaysStage(),  stages::checkStage()};
+        projectorStage(),       stages::roomStage(),  stages::lightStage(),  stages::pointerStage(),
+        stages::trackerStage(), stages::bodyStage(),  stages::eyeStage(),    stages::servosStage(),
+        stages::delaysStage(),  stages::checkStage(), stages::mirrorStage(), stages::deviceStage()};
     return rows;
 }
 
-const CalibrationStage& calibrationStage(std::string_view key) {
+std::size_t placeOfStage(std::string_view key) {
     const auto& rows = calibrationStages();
     const auto found = std::ranges::find(rows, key, &CalibrationStage::key);
-    if (found != rows.end()) return *found;
+    if (found != rows.end()) return static_cast<std::size_t>(found - rows.begin());
     std::string keys;
     for (const CalibrationStage& stage : rows) keys += (keys.empty() ? "" : ", ") + std::string(stage.key);
     throw InvalidInput("stage \"" + std::string(key) + "\"", "there is none of this name", "use one of " + keys);
 }
 
+const CalibrationStage& calibrationStage(std::string_view key) { return calibrationStages()[placeOfStage(key)]; }
+
 MeasuredStage measureStage(const CalibrationStage& stage, const StageSite& site, Bench& bench,
                            const Progress& progress) {
+    refuseSequence(stage);
     MeasuredStage measured = stage.measure(site, bench, progress);
     markResult(site.room, measured.result, measured.recording.source, false);
     return measured;
@@ -85,6 +106,7 @@ MeasuredStage measureStage(const CalibrationStage& stage, const StageSite& site,
 
 StageResult solveStage(const CalibrationStage& stage, const StageRecording& recording, const StageSite& site,
                        const Progress& progress) {
+    refuseSequence(stage);
     if (recording.stage != stage.key)
         throw DataError("recording of " + recording.stage, "it is none of the stage " + std::string(stage.key),
                         "choose another recording, or solve the stage " + recording.stage + " with it");

@@ -17,6 +17,9 @@ namespace lumorph::stages {
 [[nodiscard]] CalibrationStage delaysStage();
 [[nodiscard]] CalibrationStage checkStage();
 
+/// Of what is measured in place of another stage, where one chooses it.
+[[nodiscard]] inline bool isNeverWanted(const Installation&) { return false; }
+
 /// A recording of a stage in which nothing is yet.
 [[nodiscard]] StageRecording emptyRecording(const char* stage, const StageSite& site, const Bench& bench);
 

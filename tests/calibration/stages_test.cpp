@@ -272,7 +272,7 @@ TEST(StageSources, ABenchThatLacksSomethingSaysWhatAndNothingTakesItsPlace) {
     LabBench lab(*room.site.rig, room.truth, 4);
     TouchTable table(lab);
     for (const CalibrationStage& stage : calibrationStages()) {
-        if (stage.key == std::string_view("pointer")) continue;
+        if (stage.hasSequence() || stage.key == std::string_view("pointer")) continue;
         try {
             (void)measureStage(stage, room.site, table);
             ADD_FAILURE() << stage.key;

@@ -30,7 +30,6 @@ namespace lumorph::test {
 namespace {
 
 using namespace std::chrono_literals;
-using studio::LinkStand;
 
 void writePoses(std::ostream& out, const PoseTrack& track, double later) {
     for (const TimedPose& at : track.poses) {
@@ -215,7 +214,8 @@ TEST_F(Chain, AllThatIsMissingIsMeasuredOneAfterTheOther) {
     for (const studio::ChainLink& link : studio::chainLinks()) {
         if (link.id == studio::LinkId::room) continue; // out of sight with one projector
         const QString how = badge(link.key);
-        EXPECT_TRUE(link.isWanted ? how == "Optional" : how == "Next" || how == "Later" || how == "Open") << link.key;
+        EXPECT_TRUE(link.stage->isWanted ? how == "Optional" : how == "Next" || how == "Later" || how == "Open")
+            << link.key;
     }
     ASSERT_NO_FATAL_FAILURE(measureProjector());
     window.click("chain.rest");
@@ -236,7 +236,7 @@ TEST_F(Chain, AllThatIsMissingIsMeasuredOneAfterTheOther) {
     ASSERT_TRUE(eventually([&] { return badge("check") == "Simulated"; }, 300s)) << story();
     for (const studio::ChainLink& link : studio::chainLinks()) {
         if (link.id == studio::LinkId::room) continue;
-        EXPECT_EQ(badge(link.key), link.isWanted ? "Optional" : "Simulated") << link.key << ": " << story();
+        EXPECT_EQ(badge(link.key), link.stage->isWanted ? "Optional" : "Simulated") << link.key << ": " << story();
     }
     EXPECT_EQ(room().servos.size(), window.state().rig.rig->actuatorCount());
     EXPECT_EQ(room().projectors.front().responseCurve.size(), 65U);
@@ -530,15 +530,21 @@ TEST_F(Chain, ARealDeviceIsPlacedByRecordings) {
     EXPECT_EQ(room().origins.deviceBody.way, Origin::Way::measured);
 }
 
+TEST(ChainLinks, HaveTheOrderOfTheStages) {
+    ASSERT_EQ(studio::chainLinks().size(), calibrationStages().size());
+    for (std::size_t k = 0; k < calibrationStages().size(); ++k)
+        EXPECT_EQ(studio::chainLinks()[k].stage, &calibrationStages()[k]) << studio::chainLinks()[k].key;
+}
+
 TEST(ChainLinks, ACheckThatCannotPutRightOffersNothingToUse) {
     // The camera has moved, and the room knows of none: what is believed is the lab's, which is not kept.
     StageSite site{std::make_shared<const Rig>(test::cutTablet()), defaultInstallation()};
     CalibratedCamera& lamp = site.room.projectors.front().camera;
     lamp = withSize(lamp, {480, 270});
     LabBench bench(*site.rig, pushed(withLabCamera(site.room), *site.rig, {"camera", 3e-3, 0.0}, 2), 1);
-    const studio::LinkOutcome outcome = studio::outcomeOf(measureStage(calibrationStage("verify"), site, bench), site);
+    const StageOutcome outcome = outcomeOf(measureStage(calibrationStage("verify"), site, bench), site.room);
     EXPECT_FALSE(outcome.isGood);
-    EXPECT_FALSE(outcome.installation) << outcome.summary.toStdString();
+    EXPECT_FALSE(outcome.changesRoom) << studio::wordsOf(outcome).summary.toStdString();
 }
 
 TEST_F(Chain, TheWatchIsGreyWhereItWouldSeeItsOwnBelief) {

@@ -171,8 +171,8 @@ protected:
         chain.setFile(tracker, 0, folder.path() / "tracked.csv");
         chain.setFile(tracker, 1, folder.path() / "seen.csv");
         chain.measure();
-        return eventually([this] { return !chain.state().running; }, std::chrono::seconds(60)) &&
-               chain.state().outcomes.contains(tracker);
+        return eventually([this] { return !chain.state().session.running(); }, std::chrono::seconds(60)) &&
+               chain.state().session.outcomeAt(tracker) != nullptr;
     }
     void believePointer(Origin::Way way) {
         edit([way](Installation& room) {

@@ -42,9 +42,9 @@ struct LiveCaptureTest : testing::Test {
         if (!capture.isComplete()) return room;
         LiveBench bench(capture.plan(), capture.takes(), false);
         const StageSite site{rig, room};
-        const LinkOutcome outcome = outcomeOf(measureStage(*linkOf(id).stage, site, bench), site);
-        EXPECT_TRUE(outcome.isGood) << outcome.summary.toStdString();
-        if (outcome.installation) linkOf(id).stage->apply(*outcome.installation, room);
+        const StageOutcome outcome = outcomeOf(measureStage(*linkOf(id).stage, site, bench), site.room);
+        EXPECT_TRUE(outcome.isGood) << wordsOf(outcome).summary.toStdString();
+        if (outcome.changesRoom) linkOf(id).stage->apply(roomOf(outcome.result), room);
         return room;
     }
     /// Where the lab's first projector throws a pixel.

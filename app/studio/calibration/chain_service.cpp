@@ -26,7 +26,7 @@ ChainStep measuringStep(const ChainState& state, ChainStep::Tone tone, const QSt
                         const QString& inLab) {
     using What = ChainStep::Do;
     const ChainLink& link = chainLinks()[state.chosen];
-    if (!link.stage) return {What::sequence, tone, title, text, QObject::tr("Open it")};
+    if (link.stage->hasSequence()) return {What::sequence, tone, title, text, QObject::tr("Open it")};
     const LinkWay way = wayOf(state, state.chosen);
     if (way == LinkWay::lab) return {What::measure, tone, title, text, inLab};
     if (way == LinkWay::live && !link.notConnected.isEmpty())
@@ -47,7 +47,9 @@ ChainStep measuringStep(const ChainState& state, ChainStep::Tone tone, const QSt
 
 } // namespace
 
-LinkWay wayOf(const ChainState& state, std::size_t link) { return chainLinks()[link].stage ? state.way : LinkWay::lab; }
+LinkWay wayOf(const ChainState& state, std::size_t link) {
+    return chainLinks()[link].stage->hasSequence() ? LinkWay::lab : state.way;
+}
 
 std::optional<std::size_t> missingFile(const ChainState& state, std::size_t link) {
     const std::size_t count = chainLinks()[link].files.size();
@@ -63,31 +65,33 @@ ChainStep stepOf(const ChainState& state) {
     using What = ChainStep::Do;
     using Tone = ChainStep::Tone;
     const ChainLink& link = chainLinks()[state.chosen];
-    const LinkStand& stand = state.stands[state.chosen];
-    if (state.live && state.running == state.chosen)
+    const CalibrationSession& session = state.session;
+    const StageStand& stand = session.stands()[state.chosen];
+    const std::optional<std::size_t> running = session.running();
+    if (state.live && running == state.chosen)
         return {What::cancel, state.live->trouble.isEmpty() ? Tone::live : Tone::warning, state.live->title,
                 state.live->trouble.isEmpty() ? QObject::tr("Step %1 of %2; each is noticed by itself.")
                                                     .arg(state.live->step + 1)
                                                     .arg(state.live->steps)
                                               : state.live->trouble,
                 QObject::tr("Cancel")};
-    if (state.running == state.chosen)
+    if (running == state.chosen)
         return {What::cancel, Tone::live, QObject::tr("Measuring: %1").arg(link.title), state.stage,
                 QObject::tr("Cancel")};
-    if (state.running)
-        return {What::cancel, Tone::live, QObject::tr("Measuring: %1").arg(chainLinks()[*state.running].title),
+    if (running)
+        return {What::cancel, Tone::live, QObject::tr("Measuring: %1").arg(chainLinks()[*running].title),
                 QObject::tr("This one can be measured after it."), QObject::tr("Cancel")};
-    if (const auto trouble = state.troubles.find(state.chosen); trouble != state.troubles.end())
-        return {What::measure, Tone::failure, QObject::tr("It could not be measured"), trouble->second,
-                QObject::tr("Measure again")};
-    if (const auto found = state.outcomes.find(state.chosen); found != state.outcomes.end()) {
-        const LinkOutcome& outcome = found->second;
-        const QString summary = outcome.summary;
-        if (!outcome.isGood && !outcome.installation)
+    if (const auto trouble = session.troubles().find(state.chosen); trouble != session.troubles().end())
+        return {What::measure, Tone::failure, QObject::tr("It could not be measured"),
+                QString::fromStdString(trouble->second), QObject::tr("Measure again")};
+    if (const StageOutcome* measured = session.outcomeAt(state.chosen)) {
+        const StageOutcome& outcome = *measured;
+        const QString summary = wordsOf(outcome).summary;
+        if (!outcome.isGood && !outcome.changesRoom)
             return {What::measure, Tone::failure, QObject::tr("This is not to be trusted"), summary,
                     QObject::tr("Measure again")};
-        if (!outcome.isUsed && !state.askedBeside.empty()) {
-            const SimulatedQuestionWords words = wordsOfQuestion(state.askedBeside);
+        if (!outcome.isUsed && !session.asked().empty()) {
+            const SimulatedQuestionWords words = wordsOfQuestion(session.asked());
             return {What::use, Tone::warning, words.title, words.text, words.button};
         }
         if (!outcome.isUsed)
@@ -97,24 +101,24 @@ ChainStep stepOf(const ChainState& state) {
                                           : QObject::tr("Measured"),
                     summary, QObject::tr("Use it")};
         return {What::goOn, Tone::good, QObject::tr("In use"), summary,
-                nextLink(state.stands) ? QObject::tr("Go on") : QString()};
+                session.next() ? QObject::tr("Go on") : QString()};
     }
     const QString again = QObject::tr("Measure again");
+    const QString words = wordsOf(stand);
     switch (stand.how) {
-    case LinkStand::How::waits:
+    case StageStand::How::waits:
         return {What::goOn, Tone::quiet, QObject::tr("Its turn comes later"),
                 QObject::tr("%1 What it builds on is measured first.").arg(link.purpose), QObject::tr("What is next?")};
-    case LinkStand::How::spare:
+    case StageStand::How::spare:
         return measuringStep(state, Tone::quiet, link.title,
-                             stand.words.isEmpty() ? link.purpose
-                                                   : stand.words.left(1).toUpper() + stand.words.mid(1) + ".",
+                             words.isEmpty() ? link.purpose : words.left(1).toUpper() + words.mid(1) + ".",
                              QObject::tr("Measure in the lab"));
-    case LinkStand::How::measured:
-        return measuringStep(state, Tone::good, QObject::tr("Measured"), stand.words, again);
-    case LinkStand::How::simulated:
-        return measuringStep(state, Tone::good, QObject::tr("Simulated"), stand.words, again);
-    case LinkStand::How::stale:
-        return measuringStep(state, Tone::warning, QObject::tr("To be measured again"), stand.words + ".", again);
+    case StageStand::How::measured:
+        return measuringStep(state, Tone::good, QObject::tr("Measured"), words, again);
+    case StageStand::How::simulated:
+        return measuringStep(state, Tone::good, QObject::tr("Simulated"), words, again);
+    case StageStand::How::stale:
+        return measuringStep(state, Tone::warning, QObject::tr("To be measured again"), words + ".", again);
     default:
         return measuringStep(state, Tone::live, link.title, link.purpose, QObject::tr("Measure in the lab"));
     }
@@ -124,8 +128,8 @@ ChainService::ChainService(StudioDocument& document, StudioLoop& loop, LabRoom& 
                            LiveService& live, TableOpener table, VersionTaker take)
     : document_(document), loop_(loop), lab_(lab), live_(live), table_(std::move(table)), take_(std::move(take)),
       jobs_(*this, jobs, notices) {
-    state_.stands = standsOf(*document.state().installation, checked_);
-    state_.chosen = nextLink(state_.stands).value_or(0);
+    state_.session.follow(*document.state().installation);
+    state_.chosen = state_.session.next().value_or(0);
     connect(&document, &StudioDocument::changed, this, [this](StateParts parts) {
         if (parts & StatePart::installation) follow();
     });
@@ -142,18 +146,18 @@ ChainService::ChainService(StudioDocument& document, StudioLoop& loop, LabRoom& 
     const auto solve = [this](const LivePlan& plan, const std::vector<LiveTake>& takes, bool isSimulated) {
         state_.live.reset();
         const std::shared_ptr<const Rig>& rig = document_.state().rig.rig;
-        if (!state_.running || !rig) return cancel();
-        run(*state_.running,
-            [stage = chainLinks()[*state_.running].stage, site = StageSite{rig, *document_.state().installation}, plan,
-             takes, isSimulated](const Progress& progress) {
-                LiveBench bench(plan, takes, isSimulated);
-                return outcomeOf(measureStage(*stage, site, bench, progress), site);
-            });
+        const std::optional<std::size_t> running = state_.session.running();
+        if (!running || !rig) return cancel();
+        run(*running, [stage = chainLinks()[*running].stage, site = StageSite{rig, *document_.state().installation},
+                       plan, takes, isSimulated](const Progress& progress) {
+            LiveBench bench(plan, takes, isSimulated);
+            return outcomeOf(measureStage(*stage, site, bench, progress), site.room);
+        });
     };
     connect(&live, &LiveService::finished, this, solve);
     connect(&jobs, &Jobs::progressed, this, [this, &jobs](int id) {
         for (const Jobs::Status& status : jobs.running()) {
-            if (status.id != id || status.place != kChainPlace || !state_.running) continue;
+            if (status.id != id || status.place != kChainPlace || !state_.session.running()) continue;
             state_.fraction = status.fraction;
             state_.stage = status.stage.left(1).toUpper() + status.stage.mid(1);
             emit changed();
@@ -164,22 +168,16 @@ ChainService::ChainService(StudioDocument& document, StudioLoop& loop, LabRoom& 
 void ChainService::choose(std::size_t link) {
     if (link >= chainLinks().size() || link == state_.chosen) return;
     state_.chosen = link;
-    withdrawQuestion();
+    state_.session.withdrawQuestion();
     emit changed();
-}
-
-void ChainService::withdrawQuestion() {
-    question_.withdraw();
-    state_.askedBeside.clear();
 }
 
 void ChainService::setWay(LinkWay way) {
     if (way == state_.way) return;
     if (state_.live) cancel();
-    state_.goesOn = false;
+    state_.session.endRest();
     state_.way = way;
-    for (std::size_t link = 0; link < chainLinks().size(); ++link)
-        if (chainLinks()[link].stage) forget(link);
+    for (std::size_t link = 0; link < chainLinks().size(); ++link) state_.session.forget(link);
     emit changed();
 }
 
@@ -189,16 +187,8 @@ void ChainService::setFile(std::size_t link, std::size_t file, const std::filesy
     files.resize(chainLinks()[link].files.size() + 1);
     if (file + 1 < files.size()) files.back().clear(); // what was chosen last is what is read
     files[file] = path;
-    forget(link);
+    state_.session.forget(link);
     emit changed();
-}
-
-/// What came of it before, unless the room has it.
-void ChainService::forget(std::size_t link) {
-    withdrawQuestion();
-    state_.troubles.erase(link);
-    if (const auto found = state_.outcomes.find(link); found != state_.outcomes.end() && !found->second.isUsed)
-        state_.outcomes.erase(found);
 }
 
 void ChainService::doNext() {
@@ -210,7 +200,7 @@ void ChainService::doNext() {
     case ChainStep::Do::cancel:
         return cancel();
     case ChainStep::Do::goOn:
-        if (const auto next = nextLink(state_.stands)) choose(*next);
+        if (const auto next = state_.session.next()) choose(*next);
         return;
     default:
         return;
@@ -218,61 +208,55 @@ void ChainService::doNext() {
 }
 
 void ChainService::measure() {
-    state_.goesOn = false;
+    state_.session.endRest();
     begin(state_.chosen);
 }
 
 void ChainService::measureRest() {
-    state_.goesOn = true;
+    state_.session.measureRest();
     goOn();
 }
 
 void ChainService::goOn() {
-    const auto next = nextLink(state_.stands);
+    if (const auto next = state_.session.next()) state_.chosen = *next;
     // In a real room nothing of the lab slips in between.
     const auto waitsForUser = [this](std::size_t link) {
-        if (!chainLinks()[link].stage) return true;
+        if (chainLinks()[link].stage->hasSequence()) return true;
         if (state_.way == LinkWay::files) return wayOf(state_, link) == LinkWay::lab || missingFile(state_, link);
         return state_.way == LinkWay::live;
     };
-    if (!next || waitsForUser(*next)) {
-        state_.goesOn = false;
-        if (next) state_.chosen = *next;
-        emit changed();
-        return;
-    }
-    state_.chosen = *next;
-    begin(*next);
+    if (const auto turn = state_.session.nextOfRest(waitsForUser)) return begin(*turn);
+    emit changed();
 }
 
 /// Null where it cannot be measured now.
-std::function<LinkOutcome(const Progress&)> ChainService::workOf(std::size_t link) {
+std::function<StageOutcome(const Progress&)> ChainService::workOf(std::size_t link) {
     const ChainLink& measured = chainLinks()[link];
     const std::shared_ptr<const Rig>& rig = document_.state().rig.rig;
-    if (!rig || !measured.stage) return nullptr;
+    if (!rig || measured.stage->hasSequence()) return nullptr;
     const StageSite site{rig, *document_.state().installation};
     if (wayOf(state_, link) == LinkWay::files) {
         if (missingFile(state_, link)) return nullptr;
         const std::vector<std::filesystem::path>& files = state_.files[link];
         if (files.back().empty())
             return [run = measured.fromFiles, task = FileTask{site.room, files}](const Progress& progress) {
-                return run(task, progress);
+                return outcomeOf(run(task, progress), task.believed);
             };
         return [stage = measured.stage, site, folder = files.back()](const Progress& progress) {
             StageRecording recording = readStageRecording(folder, progress.part(0.0, 0.2));
             StageResult result = solveStage(*stage, recording, site, progress.part(0.2, 1.0));
-            return outcomeOf(MeasuredStage{std::move(recording), std::move(result)}, site);
+            return outcomeOf(MeasuredStage{std::move(recording), std::move(result)}, site.room);
         };
     }
     lab_.unpack();
     return [stage = measured.stage, site, truth = lab_.truth(), seed = seed_++](const Progress& progress) {
         LabBench bench(*site.rig, truth, seed);
-        return outcomeOf(measureStage(*stage, site, bench, progress), site);
+        return outcomeOf(measureStage(*stage, site, bench, progress), site.room);
     };
 }
 
 void ChainService::begin(std::size_t link) {
-    if (state_.running) return;
+    if (state_.session.running()) return;
     if (wayOf(state_, link) == LinkWay::live && !chainLinks()[link].notConnected.isEmpty()) return;
     if (wayOf(state_, link) == LinkWay::live)
         return chainLinks()[link].isWithTracker() ? beginLive(link) : beginOnTable(link);
@@ -283,19 +267,18 @@ void ChainService::beginLive(std::size_t link) {
     const ChainLink& measured = chainLinks()[link];
     const std::shared_ptr<const Rig>& rig = document_.state().rig.rig;
     const Installation& room = *document_.state().installation;
-    forget(link);
+    state_.session.forget(link);
     try {
         if (!rig || room.projectors.empty())
             throw InvalidInput("the room", "there is no device, or no projector", "open a rig, add a projector");
         if (const QString obstacle = live_.obstacle(measured.liveRoles); !obstacle.isEmpty()) {
-            state_.troubles[link] = obstacle;
+            state_.session.fail(link, obstacle.toStdString());
             emit changed();
             return;
         }
         LivePlan plan{measured.liveRoles, measured.liveSteps(*rig, room)};
-        state_.running = link;
+        state_.session.begin(link);
         state_.fraction = 0.0;
-        state_.outcomes.erase(link);
         live_.begin(std::move(plan), glm::dvec3(room.pointerTip), room.projectors.front().camera.size);
     } catch (const Error& error) {
         fail(link, error);
@@ -305,12 +288,12 @@ void ChainService::beginLive(std::size_t link) {
 void ChainService::beginOnTable(std::size_t link) {
     const std::shared_ptr<const Rig>& rig = document_.state().rig.rig;
     const Installation& room = *document_.state().installation;
-    forget(link);
+    state_.session.forget(link);
     try {
         if (!rig) throw InvalidInput("the device", "there is none", "open a rig");
         run(link, [stage = chainLinks()[link].stage, site = StageSite{rig, room},
                    bench = table_(room, chainLinks()[link].isMoved)](const Progress& progress) {
-            return outcomeOf(measureStage(*stage, site, *bench, progress), site);
+            return outcomeOf(measureStage(*stage, site, *bench, progress), site.room);
         });
     } catch (const std::exception& error) {
         fail(link, error);
@@ -318,56 +301,34 @@ void ChainService::beginOnTable(std::size_t link) {
 }
 
 void ChainService::fail(std::size_t link, const std::exception& error) {
-    state_.running.reset();
-    state_.goesOn = false;
-    if (dynamic_cast<const Cancelled*>(&error) == nullptr) state_.troubles[link] = wordsOfError(error);
+    const bool isCancelled = dynamic_cast<const Cancelled*>(&error) != nullptr;
+    state_.session.fail(link, isCancelled ? std::string() : wordsOfError(error).toStdString());
     emit changed();
 }
 
-void ChainService::run(std::size_t link, std::function<LinkOutcome(const Progress&)> work) {
-    withdrawQuestion();
-    state_.running = link;
+void ChainService::run(std::size_t link, std::function<StageOutcome(const Progress&)> work) {
+    state_.session.begin(link);
     state_.fraction = 0.0;
     state_.stage.clear();
-    state_.outcomes.erase(link);
     state_.kept.erase(link);
-    state_.troubles.erase(link);
     emit changed();
     if (!chainLinks()[link].warning.isEmpty()) emit handsOff();
-    jobs_.runWith<LinkOutcome>(
+    jobs_.runWith<StageOutcome>(
         kChainPlace, kChainPlace, QObject::tr("Measuring: %1").arg(chainLinks()[link].title), std::move(work),
-        [this, link](LinkOutcome outcome) { take(link, std::move(outcome)); },
+        [this, link](StageOutcome outcome) { take(link, std::move(outcome)); },
         [this, link](const std::exception& error) { fail(link, error); });
 }
 
-void ChainService::take(std::size_t link, LinkOutcome outcome) {
-    state_.running.reset();
-    const bool good = outcome.isGood;
-    const bool doubtsPointer = outcome.doubtsTracker && chainLinks()[link].id == LinkId::tracker;
-    if (isCheck(chainLinks()[link])) checked_ = {good ? utcDate() : std::string(), outcome.isSimulated};
-    state_.outcomes[link] = std::move(outcome);
-    if (doubtsPointer) doubtPointer();
-    follow();
-    if (!state_.goesOn) return;
-    state_.goesOn = good && useOf(link);
-    if (state_.goesOn) goOn();
-}
-
-/// Swings in a mirrored or wrongly scaled world fit a tip as well as true ones: only the tracker's dots tell. So the
-/// tip that was measured before does not stay as good; its figure stays, as nobody has a better one.
-void ChainService::doubtPointer() {
-    if (!document_.state().installation->origins.pointer.isCalibrated()) return;
-    for (std::size_t link = 0; link < chainLinks().size(); ++link)
-        if (chainLinks()[link].id == LinkId::pointer) state_.outcomes.erase(link);
-    document_.change(QObject::tr("Pointer tip in doubt"), [](StudioState& state) {
-        Installation room = *state.installation;
-        room.origins.pointer = {
-            Origin::Way::assumed,
-            QObject::tr("in doubt: it was measured in coordinates that the tracker link refused; measure it again")
-                .toStdString(),
-            ""};
-        state.installation = std::make_shared<const Installation>(std::move(room));
-    });
+void ChainService::take(std::size_t link, StageOutcome outcome) {
+    const auto doubted = state_.session.take(link, std::move(outcome), *document_.state().installation);
+    if (doubted)
+        document_.change(QObject::tr("Pointer tip in doubt"), [&doubted](StudioState& state) {
+            state.installation = std::make_shared<const Installation>(*doubted);
+        });
+    emit changed();
+    if (!state_.session.goesOn()) return;
+    if (useOf(link)) return goOn();
+    state_.session.endRest();
 }
 
 void ChainService::use() {
@@ -377,25 +338,22 @@ void ChainService::use() {
 
 /// True where it is in use now, or changes nothing.
 bool ChainService::useOf(std::size_t link) {
-    const auto found = state_.outcomes.find(link);
-    if (found == state_.outcomes.end()) return false;
-    if (!found->second.installation) return found->second.isGood;
-    const bool asks = found->second.isSimulated && question_.asks(*document_.state().installation);
-    state_.askedBeside = question_.asked();
-    if (asks) {
-        state_.chosen = link;
+    const Installation& room = *document_.state().installation;
+    if (!state_.session.mayUse(link, room)) {
+        if (!state_.session.asked().empty()) state_.chosen = link;
         emit changed();
         return false;
     }
-    return take_(versionOf(chainLinks()[link], found->second, *document_.state().installation));
+    const StageOutcome& outcome = *state_.session.outcomeAt(link);
+    return !outcome.changesRoom || take_(versionOf(chainLinks()[link], outcome, room));
 }
 
 void ChainService::keepRecording(std::size_t link, const std::filesystem::path& folder) {
-    const auto found = state_.outcomes.find(link);
-    if (found == state_.outcomes.end() || !found->second.recording) return;
+    const StageOutcome* outcome = state_.session.outcomeAt(link);
+    if (!outcome || !outcome->recording) return;
     jobs_.run<int>(
         kKeepPlace, kKeepPlace, QObject::tr("Writing the recording"),
-        [recording = found->second.recording, folder](const Progress& progress) {
+        [recording = outcome->recording, folder](const Progress& progress) {
             writeStageRecording(*recording, folder, progress);
             return 0;
         },
@@ -406,9 +364,9 @@ void ChainService::keepRecording(std::size_t link, const std::filesystem::path& 
 }
 
 void ChainService::cancel() {
-    state_.goesOn = false;
-    if (!state_.running) return;
-    state_.running.reset(); // nothing is handed over after a cancel
+    const bool runs = state_.session.running().has_value();
+    state_.session.cancel(); // nothing is handed over after that
+    if (!runs) return;
     state_.live.reset();
     live_.cancel();
     jobs_.stop(kChainPlace);
@@ -416,9 +374,7 @@ void ChainService::cancel() {
 }
 
 void ChainService::follow() {
-    const Installation& room = *document_.state().installation;
-    state_.stands = standsOf(room, checked_);
-    for (auto& [link, outcome] : state_.outcomes) outcome.isUsed = isUsed(chainLinks()[link], outcome, room);
+    state_.session.follow(*document_.state().installation);
     emit changed();
 }
 

@@ -23,21 +23,16 @@ enum class LinkWay { lab, live, files };
 
 /// Where the whole chain stands: a plain value.
 struct ChainState {
-    std::vector<LinkStand> stands; ///< by links
+    CalibrationSession session; ///< a link has the number of its stage
     std::size_t chosen = 0;
-    std::optional<std::size_t> running; ///< link that is measured now
-    double fraction = 0.0;              ///< of that; negative: nobody knows
+    double fraction = 0.0; ///< of what is measured now; negative: nobody knows
     QString stage;
-    std::map<std::size_t, LinkOutcome> outcomes; ///< measured, by links; one that is used stays to be read
-    std::map<std::size_t, QString> troubles;     ///< why a measurement came to nothing
     LinkWay way = LinkWay::lab;    ///< of links that can be measured so; the others are measured in the lab
     std::optional<LiveStand> live; ///< what is done just now with the connected tracker
     /// By links: those of `ChainLink::files`, and as the last one the folder of a recording of ours. Empty paths: not
     /// chosen yet.
     std::map<std::size_t, std::vector<std::filesystem::path>> files;
     std::map<std::size_t, std::filesystem::path> kept; ///< folders of recordings, by links
-    bool goesOn = false;                               ///< the rest follows by itself
-    std::vector<std::string> askedBeside; ///< what the room holds, while the chosen link asks (SimulatedQuestion)
 };
 
 /// How a link is measured now.
@@ -94,14 +89,11 @@ private:
     void begin(std::size_t link);
     void beginLive(std::size_t link);
     void beginOnTable(std::size_t link);
-    void run(std::size_t link, std::function<LinkOutcome(const Progress&)> work);
-    void withdrawQuestion();
+    void run(std::size_t link, std::function<StageOutcome(const Progress&)> work);
     void fail(std::size_t link, const std::exception& error);
-    void forget(std::size_t link);
-    [[nodiscard]] std::function<LinkOutcome(const Progress&)> workOf(std::size_t link);
-    void take(std::size_t link, LinkOutcome outcome);
+    [[nodiscard]] std::function<StageOutcome(const Progress&)> workOf(std::size_t link);
+    void take(std::size_t link, StageOutcome outcome);
     bool useOf(std::size_t link);
-    void doubtPointer();
     void goOn();
     void follow();
 
@@ -113,9 +105,7 @@ private:
     VersionTaker take_;
     JobSlots jobs_;
     ChainState state_;
-    LastCheck checked_;
-    SimulatedQuestion question_; ///< of the chosen link
-    std::uint32_t seed_ = 1;     ///< another for each measurement
+    std::uint32_t seed_ = 1; ///< another for each measurement
 };
 
 } // namespace lumorph::studio

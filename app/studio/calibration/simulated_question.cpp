@@ -7,20 +7,6 @@
 
 namespace lumorph::studio {
 
-bool SimulatedQuestion::asks(const Installation& room) {
-    const std::vector<std::string> parts = realParts(room);
-    const auto isAnswered = [this](const std::string& part) {
-        return std::ranges::find(answered_, part) != answered_.end();
-    };
-    if (!asked_.empty() && asked_ == parts) answered_.insert(answered_.end(), parts.begin(), parts.end());
-    if (std::ranges::all_of(parts, isAnswered)) {
-        asked_.clear();
-        return false;
-    }
-    asked_ = parts;
-    return true;
-}
-
 SimulatedQuestionWords wordsOfQuestion(const std::vector<std::string>& asked) {
     constexpr std::size_t kNamed = 4;
     QStringList names;

@@ -239,7 +239,7 @@ void addCalibrateCommands(const CalibrateParts& parts) {
         const bool works = state.work != CalibrationState::Work::none;
         const ChainState& chain = parts.chain.state();
         next->setEnabled(parts.selection.whole() ? !stepOf(chain).button.isEmpty() : !buttonOf(state).isEmpty());
-        rest2->setEnabled(!chain.running && nextLink(chain.stands).has_value());
+        rest2->setEnabled(!chain.session.running() && chain.session.next().has_value());
         rest->setEnabled(state.setup.way == CaptureWay::lab && !works && state.counting() < state.setup.poses);
         another->setEnabled(offersAnother(state));
         anew->setEnabled(!state.poses.empty() || state.refusal || !state.trouble.isEmpty());

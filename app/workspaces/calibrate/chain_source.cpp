@@ -79,7 +79,7 @@ private:
     void refresh() {
         const ChainState& state = parts_.chain.state();
         const ChainLink& link = chainLinks()[state.chosen];
-        setVisible(link.stage != nullptr);
+        setVisible(!link.stage->hasSequence());
         if (link.isOnTable)
             way_->setSegment(1, link.isMoved ? "Camera and servos" : "Camera and projectors",
                              "What is on the table, as it is connected");
@@ -88,7 +88,7 @@ private:
                              link.isWithTracker() ? "By touching, step by step, what the studio shows"
                                                   : link.notConnected);
         way_->setChosen(static_cast<int>(wayOf(state, state.chosen)));
-        for (QWidget* part : {static_cast<QWidget*>(way_), list_}) part->setEnabled(!state.running);
+        for (QWidget* part : {static_cast<QWidget*>(way_), list_}) part->setEnabled(!state.session.running());
         refreshLive();
         const bool unpacked = parts_.studio.lab.isUnpacked();
         lab_->setText(unpacked ? "The lab is unpacked: its tracker, pointer, device, eyes and servos are as they came "

@@ -21,7 +21,7 @@
 namespace lumorph::studio {
 namespace {
 
-using How = LinkStand::How;
+using How = StageStand::How;
 
 struct StandLook {
     QString icon;
@@ -30,12 +30,13 @@ struct StandLook {
 };
 
 StandLook lookOf(const ChainState& state, std::size_t link) {
-    if (state.running == link) return {"clock", IconRole::accent, "Running"};
-    if (state.troubles.contains(link)) return {"error", IconRole::danger, "Refused"};
-    if (const auto found = state.outcomes.find(link); found != state.outcomes.end() && !found->second.isUsed)
-        return found->second.isGood ? StandLook{"hand", IconRole::accent, "To be used"}
-                                    : StandLook{"warning", IconRole::warning, "Needs you"};
-    switch (state.stands[link].how) {
+    const CalibrationSession& session = state.session;
+    if (session.running() == link) return {"clock", IconRole::accent, "Running"};
+    if (session.troubles().contains(link)) return {"error", IconRole::danger, "Refused"};
+    if (const StageOutcome* outcome = session.outcomeAt(link); outcome && !outcome->isUsed)
+        return outcome->isGood ? StandLook{"hand", IconRole::accent, "To be used"}
+                               : StandLook{"warning", IconRole::warning, "Needs you"};
+    switch (session.stands()[link].how) {
     case How::measured:
         return {"check", IconRole::accent, "Measured"};
     case How::simulated:
@@ -51,7 +52,7 @@ StandLook lookOf(const ChainState& state, std::size_t link) {
     case How::open:
         break;
     }
-    const bool next = nextLink(state.stands) == link;
+    const bool next = session.next() == link;
     return {next ? "hand" : "minus", next ? IconRole::accent : IconRole::muted, next ? "Next" : "Open"};
 }
 
@@ -72,7 +73,7 @@ public:
     void show(const ChainState& state, bool isChosen, int number) {
         const StandLook look = lookOf(state, link_);
         const ChainLink& shown = chainLinks()[link_];
-        const QString words = state.stands[link_].words;
+        const QString words = wordsOf(state.session.stands()[link_]);
         row_->show({look.icon, look.role, shown.title, look.word,
                     words.isEmpty() ? shown.purpose : words.left(1).toUpper() + words.mid(1), number});
         setAutoExclusive(false); // else the chosen one could not be let go of
@@ -130,7 +131,8 @@ private:
         for (std::size_t k = 0; k < rows_.size(); ++k) {
             const bool isChosen = state.chosen == k && !parts_.selection.budget();
             // With one projector there are not several to be brought together.
-            const bool isShown = chainLinks()[k].id != LinkId::room || state.stands[k].how != How::spare || isChosen;
+            const bool isShown =
+                chainLinks()[k].id != LinkId::room || state.session.stands()[k].how != How::spare || isChosen;
             rows_[k]->setVisible(isShown);
             rows_[k]->show(state, isChosen, isShown && !isAside(k) ? ++number : 0);
         }
@@ -199,15 +201,17 @@ private:
         const ChainState& state = parts_.chain.state();
         const ChainLink& link = chainLinks()[state.chosen];
         card_->show(cardOf(stepOf(state)));
-        progress_->setVisible(state.running.has_value());
+        const std::optional<std::size_t> running = state.session.running();
+        progress_->setVisible(running.has_value());
         progress_->setRange(0, state.fraction < 0.0 ? 0 : 1000);
         progress_->setValue(static_cast<int>(1000.0 * state.fraction));
-        const bool runs = state.running == state.chosen;
+        const bool runs = running == state.chosen;
+        const StageOutcome* outcome = state.session.outcomeAt(state.chosen);
         // Who touches things stands at the table, and reads the step from there.
         const bool touches = runs && state.live;
         const QString large = touches ? state.live->title : link.warning;
         warning_->setText(large);
-        warning_->setVisible(!large.isEmpty() && (runs || !state.outcomes.contains(state.chosen)));
+        warning_->setVisible(!large.isEmpty() && (runs || !outcome));
         QString text;
         for (std::size_t k = 0; k < link.how.size(); ++k)
             text += QString("%1%2.  %3").arg(k == 0 ? "" : "\n").arg(k + 1).arg(link.how[k]);
@@ -215,9 +219,7 @@ private:
         // Recordings say themselves what is in them.
         for (QWidget* part : {heading_, static_cast<QWidget*>(how_)})
             part->setVisible(wayOf(state, state.chosen) != LinkWay::files && !state.live);
-        const auto found = state.outcomes.find(state.chosen);
-        const std::vector<LinkPoint> points =
-            found == state.outcomes.end() ? std::vector<LinkPoint>() : found->second.points;
+        const std::vector<LinkPoint> points = outcome ? wordsOf(*outcome).points : std::vector<LinkPoint>();
         pointsHeading_->setVisible(!points.empty());
         points_->setVisible(!points.empty());
         points_->show(points);
@@ -253,10 +255,9 @@ public:
 private:
     void refresh() {
         const ChainState& state = parts_.chain.state();
-        const auto found = state.outcomes.find(state.chosen);
-        const bool any = found != state.outcomes.end();
-        empty_->setVisible(!any);
-        page_->setVisible(any);
+        const StageOutcome* outcome = state.session.outcomeAt(state.chosen);
+        empty_->setVisible(!outcome);
+        page_->setVisible(outcome);
         while (QLayoutItem* old = list_->takeAt(0)) {
             if (old->widget()) {
                 old->widget()->hide();
@@ -264,13 +265,13 @@ private:
             }
             delete old;
         }
-        if (!any) return;
-        const LinkOutcome& outcome = found->second;
+        if (!outcome) return;
+        const LinkWords read = wordsOf(*outcome);
         list_->addWidget(makeHeading(chainLinks()[state.chosen].title, page_));
-        for (const FindingWords& words : outcome.findings)
-            list_->addWidget(makeFindingCard(words, !outcome.isGood, page_));
-        for (const LinkFigure& figure : outcome.figures) list_->addWidget(makeFigure(figure));
-        if (outcome.recording) addKeeping(state);
+        for (const FindingWords& words : read.findings)
+            list_->addWidget(makeFindingCard(words, !outcome->isGood, page_));
+        for (const LinkFigure& figure : read.figures) list_->addWidget(makeFigure(figure));
+        if (outcome->recording) addKeeping(state);
         list_->addStretch(1);
     }
 
