@@ -62,8 +62,8 @@ public:
     DriftWatch& operator=(DriftWatch&&) noexcept;
 
     /// One more look, usually every five to ten seconds. Throws InvalidInput for pictures of another size than the
-    /// room's projectors have, or strokes that are none; a photograph is never thrown at. Cancelled between its parts,
-    /// of some milliseconds each: then the watch is of no use any more.
+    /// room's projectors have, or strokes that are none; a photograph is never thrown at. Cancelled between its
+    /// parts: then the watch is of no use any more.
     const DriftReport& look(const ShowLook& show, const Progress& progress = {});
     [[nodiscard]] const DriftReport& report() const noexcept;
 

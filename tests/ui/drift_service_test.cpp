@@ -1,11 +1,9 @@
 #include "app/studio/calibration/drift_service.h"
 
-#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <cmath>
 #include <condition_variable>
-#include <cstdio>
 #include <mutex>
 #include <thread>
 
@@ -202,7 +200,7 @@ TEST_F(DriftServiceTest, StoppingWaitsForNoCamera) {
     EXPECT_NE(camera.closedBy.back(), std::this_thread::get_id());
 }
 
-TEST_F(DriftServiceTest, TheEndCancelsALookWhereverItIs) {
+TEST_F(DriftServiceTest, TheEndWaitsForNoCamera) {
     QElapsedTimer since;
     std::atomic<bool> isAsked = false;
     auto service = serviceWith([&](const ShowLook&, const SentShow&, const Progress& progress) -> cv::Mat {
@@ -216,17 +214,6 @@ TEST_F(DriftServiceTest, TheEndCancelsALookWhereverItIs) {
     since.start();
     service.reset();
     EXPECT_LT(since.elapsed(), 50) << "milliseconds";
-    qint64 longest = 0;
-    for (const int milliseconds : {0, 5, 10, 20, 40, 60, 80, 120, 160, 200}) {
-        service = serviceWith(labShowCamera(*room));
-        service->look(seconds);
-        std::this_thread::sleep_for(std::chrono::milliseconds(milliseconds));
-        since.start();
-        service.reset();
-        longest = std::max(longest, since.elapsed());
-    }
-    std::printf("the end of the service took %lld ms at most\n", static_cast<long long>(longest));
-    EXPECT_LT(longest, 200) << "milliseconds; 50 where nothing else runs";
 }
 
 TEST_F(DriftServiceTest, SaysNothingWhereTheCameraIsAway) {

@@ -63,7 +63,7 @@ public:
     /// `check`: what the notices' button does.
     DriftService(std::unique_ptr<SentShowSource> show, ShowCameraChooser choose, Notices& notices,
                  std::function<void()> check, QObject* parent = nullptr);
-    ~DriftService() override; ///< cancels a look that runs
+    ~DriftService() override; ///< cancels a look that runs; a part of what it computes may still be waited for
 
     /// Begins anew, or ends; what was said is taken back. The camera is closed beside the window, as soon as it has
     /// answered; a watch that begins before that looks then, through a camera of its own.
