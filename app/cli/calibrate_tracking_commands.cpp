@@ -57,6 +57,7 @@ void handEye(const TrackingArguments& arguments, const Session& session) {
         printJson({{"bFromA", poseOf(result.bFromA)},
                    {"worldBFromWorldA", poseOf(result.worldBFromWorldA)},
                    {"timeOffset", result.timeOffset},
+                   {"clockDrift", result.clockDrift},
                    {"residual",
                     {{"rotationDegrees", {{"median", kDegreesPerRadian * result.medianTurn}}},
                      {"positionMm", {{"median", kMillimetres * result.medianShift}}}}},
@@ -66,14 +67,16 @@ void handEye(const TrackingArguments& arguments, const Session& session) {
                    {"sigma",
                     {{"rotationDegrees", kDegreesPerRadian * result.turnSigma},
                      {"positionMm", kMillimetres * result.shiftSigma},
-                     {"timeOffset", result.offsetSigma}}},
+                     {"timeOffset", result.offsetSigma},
+                     {"clockDrift", result.driftSigma}}},
                    {"poses", result.poses},
                    {"warnings", jsonOf(result.warnings)}});
         return;
     }
     printPose("B from A", result.bFromA);
     printPose("world B from world A", result.worldBFromWorldA);
-    std::printf("clock of B minus A   %.4f s\n", result.timeOffset);
+    std::printf("clock of B minus A   %.4f s, drifting by %.1f ppm (one sigma: %.1f)\n", result.timeOffset,
+                1e6 * result.clockDrift, 1e6 * result.driftSigma);
     std::printf("single poses differ by %.2f degrees, %.1f mm; the halves of the recording by %.2f degrees, %.1f mm\n",
                 kDegreesPerRadian * result.medianTurn, kMillimetres * result.medianShift,
                 kDegreesPerRadian * result.halvesTurn, kMillimetres * result.halvesShift);

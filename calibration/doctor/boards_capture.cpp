@@ -96,7 +96,8 @@ MirrorFolder listMirror(const std::filesystem::path& folder) {
     return all;
 }
 
-/// Throws where the board was found past the mirror instead: then it is not mirrored, once the picture is.
+} // namespace
+
 void requireMirrored(const std::vector<ViewObservations>& turned) {
     std::optional<Finding> wrong = checkMirrored(turned);
     if (!wrong) return;
@@ -105,20 +106,6 @@ void requireMirrored(const std::vector<ViewObservations>& turned) {
         wrong->remedy = "let only the mirror show the board while patterns are shown; without a mirror, use procam";
     }
     throw CaptureRefused(*wrong);
-}
-
-} // namespace
-
-BoardsCapture emptyBoardsCapture(std::string board, std::vector<NamedDevice> cameras,
-                                 std::vector<NamedDevice> projectors, const std::vector<std::string>& views) {
-    BoardsCapture capture{std::move(board), std::move(cameras), std::move(projectors), {}, {}};
-    for (const std::string& name : views) {
-        InstallationView& view = capture.views.emplace_back();
-        view.name = name;
-        view.corners.resize(capture.cameras.size());
-        view.light.assign(capture.cameras.size(), std::vector<std::vector<ProjectorPoint>>(capture.projectors.size()));
-    }
-    return capture;
 }
 
 void takeLight(BoardsCapture& capture, std::size_t view, std::size_t camera, std::size_t projector,

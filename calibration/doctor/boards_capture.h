@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "calibration/decode/calibration_board.h"
@@ -20,10 +21,20 @@ struct BoardsCapture {
     std::vector<Finding> warnings;
 };
 
-/// An empty one, with a place for everything in each of its views.
-[[nodiscard]] BoardsCapture emptyBoardsCapture(std::string board, std::vector<NamedDevice> cameras,
-                                               std::vector<NamedDevice> projectors,
-                                               const std::vector<std::string>& views);
+/// An empty one, with a place for everything in each of its views. Here, so that what reads recordings needs nothing of
+/// what reads pictures.
+[[nodiscard]] inline BoardsCapture emptyBoardsCapture(std::string board, std::vector<NamedDevice> cameras,
+                                                      std::vector<NamedDevice> projectors,
+                                                      const std::vector<std::string>& views) {
+    BoardsCapture capture{std::move(board), std::move(cameras), std::move(projectors), {}, {}};
+    for (const std::string& name : views) {
+        InstallationView& view = capture.views.emplace_back();
+        view.name = name;
+        view.corners.resize(capture.cameras.size());
+        view.light.assign(capture.cameras.size(), std::vector<std::vector<ProjectorPoint>>(capture.projectors.size()));
+    }
+    return capture;
+}
 
 /// Adds what a camera saw of a view's board under one projector, with the size of the camera's pictures. Throws
 /// CaptureRefused where the board moved since another projector lit it, or where pictures have another size than those
@@ -52,6 +63,10 @@ struct MirrorCapture {
 /// not found, where the picture has another size, or where it is where it was seen in the mirror.
 [[nodiscard]] BoardPoints findDirect(const cv::Mat& grey, const std::string& view, const std::string& file,
                                      const CalibrationBoard& board, cv::Size camera, const BoardPoints& mirrored);
+
+/// Of poses whose pictures were turned left for right. Throws CaptureRefused where boards were found past the mirror
+/// instead: then they are not mirrored, once the picture is.
+void requireMirrored(const std::vector<ViewObservations>& turned);
 
 /// Reads a folder with a folder of images a pose; a picture `direct` in one shows the board past the mirror. Throws as
 /// `readBoardsCapture`.

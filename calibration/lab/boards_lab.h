@@ -1,45 +1,23 @@
 #pragma once
 
-#include <cstddef>
 #include <cstdint>
-#include <optional>
-#include <span>
 #include <string>
 
 #include <glm/vec3.hpp>
 
 #include "calibration/doctor/boards_capture.h"
 #include "calibration/lab/board_lab.h"
+#include "calibration/patterns/capture_order.h"
 #include "core/base/progress.h"
-#include "core/rig/rig.h"
 #include "core/scene/installation.h"
 
 namespace lumorph {
 
-/// The lab's camera and one projector of the room as they truly are: as somebody has put them up, near where rooms have
-/// their first projector, or for another number to the side of it, and with another zoom.
-[[nodiscard]] Installation labTruth(const Installation& room, std::size_t projector = 0);
-
-/// The whole room as it truly is in the lab: projectors that were calibrated stand where they are believed to, all
-/// others, and a camera where none was calibrated, as somebody has put them up.
-[[nodiscard]] Installation labRoomTruth(Installation room);
-
-/// Root mean square distance, metres, by which light of `believed` lands beside where `truth` puts it, over a square of
-/// `side` metres on the table around the world's origin; empty where neither lights it.
-[[nodiscard]] std::optional<double> lightError(const CalibratedCamera& believed, const CalibratedCamera& truth,
-                                               double side);
-
-/// Ground truth of the virtual lab for this seed, which measurements do not read: the
-/// same for the same seed and actuators, whatever was measured meanwhile. Projectors and cameras stand where they are
-/// believed to; where the lab's own sequence measured a projector, where that truly has it (labTruth).
-[[nodiscard]] Installation unpackedLab(const Installation& believed, std::span<const Actuator> actuators,
-                                       std::uint32_t seed);
-
 /// How boards are photographed in the lab before all projectors and cameras of a room, or before a mirror.
 struct BoardsLabOptions {
-    std::string board = "chess:9x7:25";     ///< millimetres
-    std::string pattern = "phase:16x4+1x4"; ///< four steps: a projector's gamma leaves them alone
-    int poses = 7;                          ///< the first lies flat on the table around the world's origin
+    std::string board = "chess:9x7:25"; ///< millimetres
+    std::string pattern = kFourStepPattern;
+    int poses = 7; ///< the first lies flat on the table around the world's origin
     BoardLabOptions pictures;
     /// Somebody pushes the last projector by so many metres before the fourth pose.
     double push = 0.0;

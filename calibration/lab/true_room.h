@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -35,6 +36,25 @@ struct LabErrors {
 /// actuator gets a `MeasuredServo` with its true curve, which rises strictly.
 [[nodiscard]] Installation trueRoom(const Installation& believed, std::span<const Actuator> actuators,
                                     std::uint32_t seed, const LabErrors& errors = {});
+
+/// The lab's camera and one projector of the room as they truly are: as somebody has put them up, near where rooms have
+/// their first projector, or for another number to the side of it, and with another zoom.
+[[nodiscard]] Installation labTruth(const Installation& room, std::size_t projector = 0);
+
+/// The whole room as it truly is in the lab: projectors that were calibrated stand where they are believed to, all
+/// others, and a camera where none was calibrated, as somebody has put them up.
+[[nodiscard]] Installation labRoomTruth(Installation room);
+
+/// Root mean square distance, metres, by which light of `believed` lands beside where `truth` puts it, over a square of
+/// `side` metres on the table around the world's origin; empty where neither lights it.
+[[nodiscard]] std::optional<double> lightError(const CalibratedCamera& believed, const CalibratedCamera& truth,
+                                               double side);
+
+/// Ground truth of the virtual lab for this seed, which measurements do not read: the
+/// same for the same seed and actuators, whatever was measured meanwhile. Projectors and cameras stand where they are
+/// believed to; where the lab's own sequence measured a projector, where that truly has it (labTruth).
+[[nodiscard]] Installation unpackedLab(const Installation& believed, std::span<const Actuator> actuators,
+                                       std::uint32_t seed);
 
 /// Degrees of a whole stroke; empty for an actuator that does not turn.
 [[nodiscard]] std::optional<double> degreesOf(const Actuator& actuator);

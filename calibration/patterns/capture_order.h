@@ -56,6 +56,9 @@ struct CaptureOrder {
 /// Throws InvalidInput naming the part that is wrong.
 [[nodiscard]] CaptureOrder parsePattern(std::string_view text, cv::Size projector);
 
+/// For light on anything but a flat board: phases of four steps, which a projector's gamma leaves alone.
+inline constexpr const char* kFourStepPattern = "phase:16x4+1x4";
+
 /// Parses an order file, one line an image: `column bit 9`, `row bit 0 inverse`, `column phase 16 step 0 of 3`,
 /// `white`, `black`, `unused`; empty lines, and what follows a #, are left out. `name` stands in errors. Throws
 /// DataError with the line.

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "calibration/decode/pattern_decoder.h"
+#include "calibration/patterns/capture_order.h"
 #include "calibration/servos/servo_lab.h"
 #include "calibration/servos/surface_points.h"
 #include "calibration/solve/device_calibration.h"
@@ -13,7 +14,6 @@ namespace lumorph {
 namespace {
 
 /// Four steps: a projector's gamma leaves them alone where it bends three.
-constexpr const char* kPattern = "phase:16x4+1x4";
 constexpr int kMostPoints = 20'000; // of one look
 constexpr int kPlannedPixels = 14;  // camera pixels between two rays that say what would be seen
 
@@ -58,7 +58,7 @@ Installation withMeasuredServos(const Installation& room, const ServoCalibration
 std::vector<ProjectorPoint> lookBy(DeviceBench& bench, const Installation& room, const std::vector<double>& commanded,
                                    const Progress& progress) {
     const CalibratedCamera &camera = room.cameras.front().camera, &projector = room.projectors.front().camera;
-    const CaptureOrder order = parsePattern(kPattern, {projector.size.x, projector.size.y});
+    const CaptureOrder order = parsePattern(kFourStepPattern, {projector.size.x, projector.size.y});
     bench.stand(commanded, progress);
     std::vector<cv::Mat> images = bench.photograph(0, order, progress);
     if (images.size() != order.images.size() || images.front().empty())
@@ -69,7 +69,7 @@ std::vector<ProjectorPoint> lookBy(DeviceBench& bench, const Installation& room,
 
 int picturesOfLook(const Installation& room) {
     const glm::ivec2 panel = room.projectors.front().camera.size;
-    return static_cast<int>(parsePattern(kPattern, {panel.x, panel.y}).images.size());
+    return static_cast<int>(parsePattern(kFourStepPattern, {panel.x, panel.y}).images.size());
 }
 
 } // namespace lumorph

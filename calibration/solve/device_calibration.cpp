@@ -2,11 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <limits>
 #include <map>
 #include <memory>
 #include <set>
-#include <sstream>
+#include <string>
 #include <utility>
 
 #include <Eigen/Dense>
@@ -410,7 +411,7 @@ private:
                 found = state_;
             }
         if (best < 0.0) throw noGuess(cameras_[c].name + " or " + projectors_[p].name);
-        if (best < kHopeless) throw misfit(std::numeric_limits<double>::infinity());
+        if (best < kHopeless) throw unexplained(cameras_[c].name + " and " + projectors_[p].name, best);
         state_ = found;
         cameraPlaced_[c] = projectorPlaced_[p] = true;
         progress_.report(0.4, "placing cameras and projectors");
@@ -444,7 +445,7 @@ private:
         }
         cameraPlaced_[c] = projectorPlaced_[p] = true;
         if (best < 0.0) throw noGuess(isCamera ? cameras_[c].name : projectors_[p].name);
-        if (best < kHopeless) throw misfit(std::numeric_limits<double>::infinity());
+        if (best < kHopeless) throw unexplained(isCamera ? cameras_[c].name : projectors_[p].name, best);
         state_ = found;
         return true;
     }
@@ -599,7 +600,7 @@ private:
             gatherAll(isRough ? kFirstPoints : kLastPoints, round == 0 || round == kBefore);
             noise_.projector = std::max(kLeastSolveNoise, noiseOf(seen_));
             noise_.robust = 3.0;
-            if (!std::isfinite(noise_.projector)) throw misfit(noise_.projector);
+            if (!std::isfinite(noise_.projector)) throw misfit("no projector lights it where a camera sees light");
             const InstallationState before = state_;
             refineInstallation(seen_, free_, noise_, state_, isRough ? kRoughSteps : kSteps);
             if (round > kBefore && isSettled(before)) break;
@@ -620,23 +621,48 @@ private:
         return rests(state_.cameras, before.cameras) && rests(state_.projectors, before.projectors);
     }
 
-    [[nodiscard]] static CaptureRefused misfit(double noise) {
-        std::ostringstream why;
-        why.precision(2);
-        why << std::fixed << "the light does not fit the device's shape";
-        if (std::isfinite(noise)) why << ": " << noise << " projector pixels remain";
-        return CaptureRefused({Cause::modelDoesNotFit, "", "", why.str(),
+    /// `what`: which of the light contradicts the device's shape, and by how much.
+    [[nodiscard]] static CaptureRefused misfit(const std::string& what) {
+        return CaptureRefused({Cause::modelDoesNotFit, "", "", "the light does not fit the device's shape: " + what,
                                "check that the rig is this device, that its flaps stand as they were told, and that "
                                "neither it nor cameras and projectors moved"});
     }
 
-    void report() {
-        std::size_t fits = 0;
+    [[nodiscard]] static CaptureRefused unexplained(const std::string& devices, double share) {
+        return misfit("where " + devices + " fits best, it explains " +
+                      std::to_string(static_cast<int>(100.0 * share)) + " of 100 lit points");
+    }
+
+    void requireFit() {
+        std::vector<double> beside;
         for (const auto& error : errorsOf(seen_.lights, state_))
-            if (error) fits += cv::norm(*error) < 5.0 * noise_.projector;
+            if (error) beside.push_back(cv::norm(*error));
+        const auto others =
+            std::ranges::partition(beside, [this](double pixels) { return pixels < 5.0 * noise_.projector; });
+        const auto fits = static_cast<double>(others.begin() - beside.begin());
         result_.rms = noise_.projector;
-        result_.onDevice = static_cast<double>(fits) / std::max<double>(1.0, static_cast<double>(seen_.lights.size()));
-        if (result_.rms > kDeviceFits || result_.onDevice < kFitShare) throw misfit(result_.rms);
+        result_.onDevice = fits / std::max<double>(1.0, static_cast<double>(seen_.lights.size()));
+        char text[160];
+        if (result_.rms > kDeviceFits) {
+            std::snprintf(text, sizeof(text), "%.1f projector pixels remain", result_.rms);
+            throw misfit(text);
+        }
+        if (result_.onDevice >= kFitShare) return;
+        const std::size_t left = others.size();
+        std::string by;
+        if (left > 0) {
+            const auto middle = others.begin() + static_cast<std::ptrdiff_t>(left / 2);
+            std::ranges::nth_element(others, middle);
+            std::snprintf(text, sizeof(text), ", the others lie %.1f projector pixels beside it (median)", *middle);
+            by = text;
+        }
+        std::snprintf(text, sizeof(text), "%.0f of 100 lit points lie on it as it was told to stand",
+                      std::floor(100.0 * result_.onDevice));
+        throw misfit(text + by);
+    }
+
+    void report() {
+        requireFit();
         const auto take = [this](const NamedDevice& named, const InstallationState::Device& solved,
                                  const InstallationState::Device& sigma, const InstallationNoise::Known& known,
                                  const LensMask& free) {

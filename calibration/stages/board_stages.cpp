@@ -7,176 +7,22 @@
 #include <glm/gtc/constants.hpp>
 #include <glm/matrix.hpp>
 
+#include "calibration/doctor/view_check.h"
 #include "calibration/report/calibrated_room.h"
 #include "calibration/solve/first_guess.h"
 #include "calibration/solve/installation_calibration.h"
 #include "calibration/stages/stage_rows.h"
+#include "calibration/stages/stage_tables.h"
 #include "core/base/error.h"
 
-// All projectors and cameras at once by boards, and a projector that the camera sees in a mirror alone. A recording has
-// the devices, the board's points as each camera saw them in each pose, and the light that was decoded on it. The last
-// pose is held out: it checks what the others tell.
+// All projectors and cameras at once by boards, and a projector that the camera sees in a mirror alone. The last pose
+// is held out: it checks what the others tell.
 
 namespace lumorph {
 
 namespace {
 
-const std::vector<std::string> kDeviceColumns{"projector", "width", "height"};
-const std::vector<std::string> kViewColumns{"check"};
-const std::vector<std::string> kCornerColumns{"pose", "camera", "direct", "x", "y", "camera_column", "camera_row"};
-const std::vector<std::string> kBoardLightColumns{"pose",       "camera",       "projector", "camera_column",
-                                                  "camera_row", "light_column", "light_row"};
 constexpr double kMetresPerUnit = 0.001; // boards are named in millimetres
-constexpr std::size_t kFewestPoses = 4;  // three to solve, one to check
-
-void addDevice(RecordedTable& devices, const NamedDevice& device, bool isProjector) {
-    devices.add(device.name, {isProjector ? 1.0 : 0.0, static_cast<double>(device.size.width),
-                              static_cast<double>(device.size.height)});
-}
-
-void addCorners(RecordedTable& corners, std::size_t pose, std::size_t camera, bool isDirect, const BoardPoints& seen) {
-    for (std::size_t i = 0; i < seen.seen.size(); ++i)
-        corners.add({static_cast<double>(pose), static_cast<double>(camera), isDirect ? 1.0 : 0.0, seen.board[i].x,
-                     seen.board[i].y, seen.seen[i].x, seen.seen[i].y});
-}
-
-void addBoardLight(RecordedTable& table, std::size_t pose, std::size_t camera, std::size_t projector,
-                   const std::vector<ProjectorPoint>& light) {
-    for (const ProjectorPoint& point : light)
-        table.add({static_cast<double>(pose), static_cast<double>(camera), static_cast<double>(projector),
-                   point.camera.x, point.camera.y, point.projector.x, point.projector.y});
-}
-
-/// The tables that both kinds have.
-struct BoardTables {
-    RecordedTable devices{kDeviceColumns, {}, {}}, poses{kViewColumns, {}, {}}, corners{kCornerColumns, {}, {}},
-        light{kBoardLightColumns, {}, {}};
-
-    void addPoses(const std::vector<std::string>& names) {
-        for (std::size_t i = 0; i < names.size(); ++i) poses.add(names[i], {i + 1 == names.size() ? 1.0 : 0.0});
-    }
-    void into(StageRecording& recording) && {
-        recording.tables["devices"] = std::move(devices);
-        recording.tables["poses"] = std::move(poses);
-        recording.tables["corners"] = std::move(corners);
-        recording.tables["light"] = std::move(light);
-    }
-};
-
-StageRecording recordingOf(const BoardsCapture& capture, StageRecording recording) {
-    recording.method = capture.board;
-    BoardTables tables;
-    for (const NamedDevice& camera : capture.cameras) addDevice(tables.devices, camera, false);
-    for (const NamedDevice& projector : capture.projectors) addDevice(tables.devices, projector, true);
-    std::vector<std::string> names;
-    for (std::size_t pose = 0; pose < capture.views.size(); ++pose) {
-        const InstallationView& view = capture.views[pose];
-        names.push_back(view.name);
-        for (std::size_t c = 0; c < capture.cameras.size(); ++c) {
-            addCorners(tables.corners, pose, c, false, view.corners[c]);
-            for (std::size_t p = 0; p < capture.projectors.size(); ++p)
-                addBoardLight(tables.light, pose, c, p, view.light[c][p]);
-        }
-    }
-    tables.addPoses(names);
-    std::move(tables).into(recording);
-    return recording;
-}
-
-StageRecording recordingOf(const MirrorCapture& capture, StageRecording recording) {
-    recording.method = capture.board;
-    BoardTables tables;
-    addDevice(tables.devices, {"camera", capture.camera}, false);
-    addDevice(tables.devices, {"projector", capture.projector}, true);
-    std::vector<std::string> names;
-    for (std::size_t pose = 0; pose < capture.views.size(); ++pose) {
-        const MirrorView& view = capture.views[pose];
-        names.push_back(view.name);
-        addCorners(tables.corners, pose, 0, false, view.mirrored);
-        addCorners(tables.corners, pose, 0, true, view.direct);
-        addBoardLight(tables.light, pose, 0, 0, view.light);
-    }
-    tables.addPoses(names);
-    std::move(tables).into(recording);
-    return recording;
-}
-
-/// A board in sight shows at least so many points; findBoard gives no fewer.
-constexpr std::size_t kFewestCorners = 4;
-
-void requireSound(const StageRecording& recording, const RecordedTable& table) {
-    if (std::ranges::all_of(table.numbers, [](double number) { return std::isfinite(number); })) return;
-    throw DataError("recording of " + recording.stage, "a number of it is none",
-                    "record the stage again, or take another copy of the folder");
-}
-
-void requireSound(const StageRecording& recording, const BoardPoints& points) {
-    if (points.seen.empty() || points.seen.size() >= kFewestCorners) return;
-    throw DataError("recording of " + recording.stage, "a board in it has fewer than four points",
-                    "record the stage again");
-}
-
-cv::Size sizeIn(std::span<const double> row) {
-    constexpr std::size_t kMostPixels = 100'000;
-    const cv::Size size(static_cast<int>(stages::indexIn(row[1], kMostPixels, "pixels")),
-                        static_cast<int>(stages::indexIn(row[2], kMostPixels, "pixels")));
-    if (size.empty()) throw DataError("recording of boards", "a device has no pixels", "record the stage again");
-    return size;
-}
-
-/// What both kinds of recording hold, by pose; the cameras' direct sights apart.
-struct ReadBoards {
-    std::vector<NamedDevice> cameras, projectors;
-    std::vector<InstallationView> views;
-    std::vector<BoardPoints> direct; ///< of the first camera, by pose
-    std::vector<bool> isCheck;
-};
-
-ReadBoards boardsOf(const StageRecording& recording) {
-    ReadBoards read;
-    const RecordedTable& devices = tableOf(recording, "devices", kDeviceColumns);
-    const RecordedTable& poses = tableOf(recording, "poses", kViewColumns);
-    const RecordedTable& corners = tableOf(recording, "corners", kCornerColumns);
-    const RecordedTable& light = tableOf(recording, "light", kBoardLightColumns);
-    if (devices.names.size() != devices.rows() || poses.names.size() != poses.rows())
-        throw DataError("recording of " + recording.stage, "its devices or poses have no names",
-                        "record the stage again");
-    for (const RecordedTable* table : {&devices, &poses, &corners, &light}) requireSound(recording, *table);
-    for (std::size_t i = 0; i < devices.rows(); ++i)
-        (devices.row(i)[0] != 0.0 ? read.projectors : read.cameras)
-            .push_back({devices.names[i], sizeIn(devices.row(i))});
-    read.direct.resize(poses.rows());
-    for (std::size_t i = 0; i < poses.rows(); ++i) {
-        InstallationView& view = read.views.emplace_back();
-        view.name = poses.names[i];
-        view.corners.resize(read.cameras.size());
-        view.light.assign(read.cameras.size(), std::vector<std::vector<ProjectorPoint>>(read.projectors.size()));
-        read.isCheck.push_back(poses.row(i)[0] != 0.0);
-    }
-    for (std::size_t i = 0; i < corners.rows(); ++i) {
-        const auto row = corners.row(i);
-        const std::size_t pose = stages::indexIn(row[0], read.views.size(), "a pose"),
-                          camera = stages::indexIn(row[1], read.cameras.size(), "a camera");
-        BoardPoints& points = row[2] != 0.0 ? read.direct[pose] : read.views[pose].corners[camera];
-        points.board.emplace_back(row[3], row[4], 0.0);
-        points.seen.emplace_back(row[5], row[6]);
-    }
-    for (std::size_t pose = 0; pose < read.views.size(); ++pose) {
-        requireSound(recording, read.direct[pose]);
-        for (const BoardPoints& points : read.views[pose].corners) requireSound(recording, points);
-    }
-    for (std::size_t i = 0; i < light.rows(); ++i) {
-        const auto row = light.row(i);
-        const std::size_t pose = stages::indexIn(row[0], read.views.size(), "a pose"),
-                          camera = stages::indexIn(row[1], read.cameras.size(), "a camera"),
-                          projector = stages::indexIn(row[2], read.projectors.size(), "a projector");
-        read.views[pose].light[camera][projector].push_back({{row[3], row[4]}, {row[5], row[6]}});
-    }
-    if (read.cameras.empty() || read.projectors.empty() || read.views.size() < kFewestPoses)
-        throw DataError("recording of " + recording.stage, "it has no camera, no projector, or fewer than four poses",
-                        "record the stage again");
-    return read;
-}
 
 /// Light of a board that was held out: where the others put it, less where it was decoded.
 std::vector<stages::LightBeside> besideOn(InstallationState state, std::size_t camera, std::size_t projector,
@@ -222,8 +68,8 @@ ProcamCalibration pairOf(const InstallationCalibration& solved, std::size_t proj
     return pair;
 }
 
-Installation roomWith(const Installation& room, const InstallationCalibration& solved, const ReadBoards& read,
-                      const CalibrationBoard& board, const std::string& method) {
+Installation roomWith(const Installation& room, const InstallationCalibration& solved,
+                      const stages::RecordedBoards& read, const CalibrationBoard& board, const std::string& method) {
     Installation with = room;
     RoomPlacement placement;
     placement.metresPerUnit = kMetresPerUnit;
@@ -261,16 +107,30 @@ Installation roomWith(const Installation& room, const InstallationCalibration& s
     return with;
 }
 
+/// Throws CaptureRefused where a camera saw a projector's light in mirror images, as folders of pictures are refused.
+void requireUnmirrored(const BoardsCapture& read) {
+    for (std::size_t c = 0; c < read.cameras.size(); ++c)
+        for (std::size_t p = 0; p < read.projectors.size(); ++p) {
+            std::vector<ViewObservations> lit;
+            for (const InstallationView& view : read.views)
+                if (!view.light[c][p].empty())
+                    lit.push_back({view.name + "/" + read.cameras[c].name + "/" + read.projectors[p].name,
+                                   view.corners[c], view.light[c][p]});
+            if (const auto mirrored = checkMirrored(lit)) throw CaptureRefused(*mirrored);
+        }
+}
+
 double shiftOf(const PoseVector& sigma) { return kMetresPerUnit * std::hypot(sigma[3], sigma[4], sigma[5]); }
 
 StageResult solveRoom(const StageRecording& recording, const StageSite& site, const Progress& progress) {
     PlacedDevices result;
     result.room = site.room;
-    ReadBoards read = boardsOf(recording);
+    const stages::RecordedBoards read = stages::boardsOf(recording);
     const CalibrationBoard board = parseCalibrationBoard(recording.method);
     std::vector<InstallationView> used, held;
     for (std::size_t v = 0; v < read.views.size(); ++v) (read.isCheck[v] ? held : used).push_back(read.views[v]);
     try {
+        requireUnmirrored(read);
         const InstallationCalibration solved = calibrateInstallation(used, read.cameras, read.projectors, progress);
         result.rms = solved.rms;
         result.warnings = solved.warnings;
@@ -333,7 +193,7 @@ Rigid behindMirror(const MirrorView& view, Lens lens, int pictureWidth, const Mi
 StageResult solveMirror(const StageRecording& recording, const StageSite& site, const Progress& progress) {
     PlacedDevices result;
     result.room = site.room;
-    const ReadBoards read = boardsOf(recording);
+    const stages::RecordedBoards read = stages::boardsOf(recording);
     const CalibrationBoard board = parseCalibrationBoard(recording.method);
     std::vector<MirrorView> used, held;
     for (std::size_t v = 0; v < read.views.size(); ++v)
@@ -341,6 +201,13 @@ StageResult solveMirror(const StageRecording& recording, const StageSite& site, 
             .push_back({read.views[v].name, read.views[v].corners.front(), read.views[v].light.front().front(),
                         read.direct[v]});
     try {
+        std::vector<ViewObservations> turned;
+        for (const InstallationView& view : read.views) {
+            const MirrorView back = mirrorView({view.name, view.corners.front(), view.light.front().front()},
+                                               read.cameras.front().size.width);
+            if (!back.light.empty()) turned.push_back({back.name, back.mirrored, back.light});
+        }
+        requireMirrored(turned);
         const MirrorCalibration solved =
             calibrateMirrored(used, read.cameras.front().size, read.projectors.front().size, progress);
         const ProcamCalibration& procam = solved.procam;
@@ -407,8 +274,8 @@ CalibrationStage roomStage() {
     };
     stage.measure = [](const StageSite& site, Bench& bench, const Progress& progress) {
         const auto capture = bench.recordBoards(site, progress.part(0.0, 0.8));
-        return solvedBoards(recordingOf(capture, stages::emptyRecording("room", site, bench)), calibrationStage("room"),
-                            site, progress);
+        return solvedBoards(stages::recordingOf(capture, stages::emptyRecording("room", site, bench)),
+                            calibrationStage("room"), site, progress);
     };
     stage.solve = solveRoom;
     stage.apply = stages::applyPlaces;
@@ -433,7 +300,7 @@ CalibrationStage mirrorStage() {
     stage.isWanted = isNeverWanted;
     stage.measure = [](const StageSite& site, Bench& bench, const Progress& progress) {
         const auto capture = bench.recordMirror(site, progress.part(0.0, 0.8));
-        return solvedBoards(recordingOf(capture, stages::emptyRecording("mirror", site, bench)),
+        return solvedBoards(stages::recordingOf(capture, stages::emptyRecording("mirror", site, bench)),
                             calibrationStage("mirror"), site, progress);
     };
     stage.solve = solveMirror;

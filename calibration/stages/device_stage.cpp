@@ -10,29 +10,23 @@
 #include "calibration/lab/board_lab.h"
 #include "calibration/lab/check_lab.h"
 #include "calibration/lab/lab_world.h"
+#include "calibration/patterns/capture_order.h"
 #include "calibration/report/calibrated_room.h"
 #include "calibration/solve/device_calibration.h"
 #include "calibration/stages/stage_rows.h"
+#include "calibration/stages/stage_tables.h"
 #include "core/base/error.h"
 
-// Projectors and camera by the device itself, without a board: light on it at rest and with each actuator raised. A
-// recording holds the commanded strokes of each shot and the light that was decoded in it. The last shot is held out.
+// Projectors and camera by the device itself, without a board: light on it at rest and with each actuator raised. The
+// last shot is held out.
 
 namespace lumorph {
 
 namespace {
 
-constexpr const char* kDevicePattern = "phase:16x4+1x4"; // four steps: a projector's gamma leaves them alone
 constexpr const char* kDeviceMethod = "structured light on the device";
 constexpr double kRaised = 0.5, kCheckRaised = 0.3; // of a stroke: upright flaps show light only their edge
 constexpr int kMostCells = 20'000;                  // of one picture
-const std::vector<std::string> kLampColumns{"projector", "width", "height"};
-
-std::vector<std::string> shotColumns(std::size_t actuators) {
-    std::vector<std::string> columns{"check"};
-    for (std::size_t i = 1; i <= actuators; ++i) columns.push_back("stroke_" + std::to_string(i));
-    return columns;
-}
 
 /// At rest, with each actuator raised by itself, and all of them raised a little.
 std::vector<std::vector<double>> shotsFor(std::size_t actuators) {
@@ -53,12 +47,12 @@ std::vector<std::size_t> lampsOf(const Installation& room) {
 
 StageRecording recordShots(const StageSite& site, Bench& bench, const Progress& progress) {
     StageRecording recording = stages::emptyRecording("device", site, bench);
-    recording.method = kDevicePattern;
+    recording.method = kFourStepPattern;
     const std::size_t actuators = site.rig->actuatorCount();
     RecordedTable &devices = recording.tables["devices"], &shots = recording.tables["shots"],
                   &light = recording.tables["light"];
-    devices.columns = kLampColumns;
-    shots.columns = shotColumns(actuators);
+    devices.columns = stages::kDeviceColumns;
+    shots.columns = stages::shotColumns(actuators);
     light.columns = stages::kLightColumns;
     const std::vector<std::size_t> lamps = lampsOf(site.room);
     const auto stands = shotsFor(actuators);
@@ -72,7 +66,7 @@ StageRecording recordShots(const StageSite& site, Bench& bench, const Progress& 
         for (std::size_t p = 0; p < lamps.size(); ++p) {
             const std::size_t look = shot * lamps.size() + p;
             const glm::ivec2 panel = site.room.projectors[lamps[p]].camera.size;
-            const CaptureOrder order = parsePattern(kDevicePattern, {panel.x, panel.y});
+            const CaptureOrder order = parsePattern(kFourStepPattern, {panel.x, panel.y});
             const double from = static_cast<double>(look) * share;
             const auto images = device.photograph(lamps[p], order, progress.part(from, from + share));
             if (images.size() != order.images.size() || images.front().empty())
@@ -90,45 +84,6 @@ StageRecording recordShots(const StageSite& site, Bench& bench, const Progress& 
         add(site.room.projectors[k].name, true, site.room.projectors[k].camera.size.x,
             site.room.projectors[k].camera.size.y);
     return recording;
-}
-
-struct ReadShots {
-    std::vector<NamedDevice> cameras, projectors;
-    std::vector<DeviceShot> shots; ///< with the one that checks as the last
-    bool hasCheck = false;
-};
-
-ReadShots shotsOf(const StageRecording& recording, std::size_t actuators) {
-    ReadShots read;
-    const RecordedTable& devices = tableOf(recording, "devices", kLampColumns);
-    const RecordedTable& shots = tableOf(recording, "shots", shotColumns(actuators));
-    if (devices.names.size() != devices.rows())
-        throw DataError("recording of device", "its camera and projectors have no names", "record the stage again");
-    constexpr std::size_t kMostPixels = 100'000;
-    for (std::size_t i = 0; i < devices.rows(); ++i) {
-        const auto row = devices.row(i);
-        const cv::Size size(static_cast<int>(stages::indexIn(row[1], kMostPixels, "pixels")),
-                            static_cast<int>(stages::indexIn(row[2], kMostPixels, "pixels")));
-        (row[0] != 0.0 ? read.projectors : read.cameras).push_back({devices.names[i], size});
-    }
-    if (read.cameras.size() != 1 || read.projectors.empty() || shots.rows() == 0)
-        throw DataError("recording of device", "it has no camera, no projector or no shot", "record the stage again");
-    const std::size_t lamps = read.projectors.size();
-    const auto light = stages::lightOf(tableOf(recording, "light", stages::kLightColumns), shots.rows() * lamps);
-    for (std::size_t i = 0; i < shots.rows(); ++i) {
-        const auto row = shots.row(i);
-        DeviceShot shot;
-        shot.name = "shot " + std::to_string(i + 1);
-        shot.strokes.assign(row.begin() + 1, row.end());
-        for (const double stroke : shot.strokes)
-            if (!(stroke >= 0.0 && stroke <= 1.0))
-                throw DataError("recording of device", "a stroke is none from 0 to 1", "record the stage again");
-        shot.light.resize(1);
-        for (std::size_t p = 0; p < lamps; ++p) shot.light.front().push_back(light[i * lamps + p]);
-        read.shots.push_back(std::move(shot));
-    }
-    read.hasCheck = shots.row(shots.rows() - 1)[0] != 0.0;
-    return read;
 }
 
 glm::dmat4 placeOf(const PoseVector& fromDevice, const Installation& room) {
@@ -157,7 +112,7 @@ std::vector<stages::LightBeside> besideOnDevice(const Rig& rig, const Installati
 StageResult solveDeviceAlone(const StageRecording& recording, const StageSite& site, const Progress& progress) {
     PlacedDevices result;
     result.room = site.room;
-    ReadShots read = shotsOf(recording, site.rig->actuatorCount());
+    stages::RecordedShots read = stages::shotsOf(recording, site.rig->actuatorCount());
     for (DeviceShot& shot : read.shots) shot.strokes = risenStrokes(site.room, *site.rig, shot.strokes);
     std::optional<DeviceShot> held;
     if (read.hasCheck) {
@@ -166,7 +121,7 @@ StageResult solveDeviceAlone(const StageRecording& recording, const StageSite& s
     }
     try {
         const DeviceCalibration solved =
-            calibrateOnDevice(*site.rig, read.shots, read.cameras, read.projectors, {}, progress);
+            calibrateOnDevice(*site.rig, read.shots, {read.camera}, read.projectors, {}, progress);
         result.rms = solved.rms;
         result.warnings = solved.warnings;
         const std::string method = std::string(kDeviceMethod) + ", " + std::to_string(read.shots.size()) + " states";
@@ -182,7 +137,7 @@ StageResult solveDeviceAlone(const StageRecording& recording, const StageSite& s
         camera.camera = isScaled ? withSize(seen, before) : seen;
         camera.lens = camera.pose = origin;
         const auto shiftOf = [](const PoseVector& sigma) { return std::hypot(sigma[3], sigma[4], sigma[5]); };
-        result.devices.push_back({read.cameras.front().name,
+        result.devices.push_back({read.camera.name,
                                   false,
                                   solved.cameras.front().rms,
                                   solved.cameras.front().sigma[kFocalLength],

@@ -5,6 +5,8 @@
 #include <charconv>
 #include <cmath>
 #include <limits>
+#include <memory>
+#include <new>
 #include <utility>
 
 #include <nlohmann/json.hpp>
@@ -29,6 +31,8 @@ constexpr std::size_t kMostFiles = 100'000;
 constexpr int kMostPixels = 16'384; // of a picture's side
 constexpr std::size_t kMostColumns = 256;
 constexpr const char* kTruthFile = "truth.json";
+constexpr std::size_t kPackedFrom = 1'000'000; // bytes of a table: what people read as it is stays as it is
+constexpr int kGzip = 15 + 16;                 // the format, as zlib has it told
 constexpr const char* kNameColumn = "name";
 
 [[noreturn]] void broken(const std::string& place, const std::string& why,
@@ -42,6 +46,48 @@ std::string_view textOf(std::span<const std::byte> bytes) {
 
 unsigned long checksumOf(std::string_view bytes) {
     return crc32_z(crc32_z(0, nullptr, 0), reinterpret_cast<const Bytef*>(bytes.data()), bytes.size());
+}
+
+using Packing = std::unique_ptr<z_stream, int (*)(z_stream*)>;
+
+void setInput(z_stream& stream, std::string_view bytes) {
+    stream.next_in = const_cast<Bytef*>(reinterpret_cast<const Bytef*>(bytes.data()));
+    stream.avail_in = static_cast<uInt>(bytes.size());
+}
+
+/// As gzip packs it.
+std::string packed(std::string_view text) {
+    z_stream stream{};
+    if (deflateInit2(&stream, Z_DEFAULT_COMPRESSION, Z_DEFLATED, kGzip, 8, Z_DEFAULT_STRATEGY) != Z_OK)
+        throw std::bad_alloc();
+    const Packing end(&stream, deflateEnd);
+    std::string bytes(deflateBound(&stream, static_cast<uLong>(text.size())), '\0');
+    setInput(stream, text);
+    stream.next_out = reinterpret_cast<Bytef*>(bytes.data());
+    stream.avail_out = static_cast<uInt>(bytes.size());
+    deflate(&stream, Z_FINISH); // into so much room it ends at once
+    bytes.resize(stream.total_out);
+    return bytes;
+}
+
+std::string unpacked(std::string_view bytes, const std::string& place) {
+    z_stream stream{};
+    if (inflateInit2(&stream, kGzip) != Z_OK) throw std::bad_alloc();
+    const Packing end(&stream, inflateEnd);
+    setInput(stream, bytes);
+    std::string text;
+    for (int state = Z_OK; state != Z_STREAM_END;) {
+        constexpr std::size_t kPiece = 1U << 20U;
+        const std::size_t before = text.size();
+        if (before > kMostBytes) broken(place, "it unpacks to more than a table ever has");
+        text.resize(before + kPiece);
+        stream.next_out = reinterpret_cast<Bytef*>(text.data() + before);
+        stream.avail_out = kPiece;
+        state = inflate(&stream, Z_NO_FLUSH);
+        text.resize(before + kPiece - stream.avail_out);
+        if (state != Z_OK && state != Z_STREAM_END) broken(place, "it does not unpack");
+    }
+    return text;
 }
 
 std::string pngOf(const cv::Mat& picture) {
@@ -74,7 +120,7 @@ cv::Mat parsePicture(std::string_view bytes, const std::string& place) {
     } catch (const cv::Exception&) {
         picture.release();
     }
-    if (picture.type() != CV_8UC1 && picture.type() != CV_8UC3)
+    if (picture.empty() || (picture.type() != CV_8UC1 && picture.type() != CV_8UC3))
         broken(place, "it is broken, or no picture of 8 bits in grey or colour");
     if (picture.channels() == 3) cv::cvtColor(picture, picture, cv::COLOR_BGR2RGB);
     return picture;
@@ -201,7 +247,13 @@ void writeStageRecording(const StageRecording& recording, const std::filesystem:
         making.write(name, bytes);
         files.push_back({{"name", name}, {"bytes", bytes.size()}, {"crc32", checksumOf(bytes)}});
     };
-    for (const auto& [name, table] : recording.tables) write(name + ".csv", tableText(table));
+    for (const auto& [name, table] : recording.tables) {
+        const std::string text = tableText(table);
+        if (text.size() < kPackedFrom)
+            write(name + ".csv", text);
+        else
+            write(name + ".csv.gz", packed(text));
+    }
     for (const auto& [name, picture] : recording.pictures) write(name + ".png", pngOf(picture));
     if (recording.truth) write(kTruthFile, installationText(*recording.truth));
     const nlohmann::json description = {{"lumorph", "calibration recording"},
@@ -259,11 +311,14 @@ StageRecording parseStageRecording(std::string_view description, const std::stri
                              " bytes are there");
         if (bytes.size() > length || checksumOf(textOf(bytes)) != valueOf<std::uint64_t>(listed[i], "crc32", place))
             broken(file, "it is damaged: its bytes are not those that were recorded");
-        const std::string stem = name.substr(0, name.rfind('.'));
+        const bool isPacked = name.ends_with(".csv.gz");
+        const std::string stem = name.substr(0, isPacked ? name.size() - 7 : name.rfind('.'));
         if (name == kTruthFile)
             recording.truth = parseInstallation(textOf(bytes), file);
         else if (name.ends_with(".csv"))
             recording.tables[stem] = parseTable(textOf(bytes), file);
+        else if (isPacked)
+            recording.tables[stem] = parseTable(unpacked(textOf(bytes), file), file);
         else if (name.ends_with(".png"))
             recording.pictures[stem] = parsePicture(textOf(bytes), file);
         else

@@ -68,7 +68,7 @@ struct StageRecording {
 };
 
 /// Version of the folder's format that this program writes; newer ones are refused.
-inline constexpr int kRecordingVersion = 1;
+inline constexpr int kRecordingVersion = 2; ///< 2: large tables are packed
 inline constexpr const char* kRecordingFile = "recording.json";
 
 /// A table that a stage needs, with exactly these columns. Throws DataError that names the recording's part.

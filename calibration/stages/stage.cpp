@@ -137,27 +137,6 @@ Installation roomWithCamera(const StageSite& site, const RecordingSource& source
     return site.room;
 }
 
-void addLight(RecordedTable& table, std::size_t look, const std::vector<ProjectorPoint>& light) {
-    for (const ProjectorPoint& point : light)
-        table.add({static_cast<double>(look), point.camera.x, point.camera.y, point.projector.x, point.projector.y});
-}
-
-std::vector<std::vector<ProjectorPoint>> lightOf(const RecordedTable& table, std::size_t looks) {
-    std::vector<std::vector<ProjectorPoint>> light(looks);
-    for (std::size_t i = 0; i < table.rows(); ++i) {
-        const auto row = table.row(i);
-        light[indexIn(row[0], looks, "a look")].push_back({{row[1], row[2]}, {row[3], row[4]}});
-    }
-    return light;
-}
-
-std::size_t indexIn(double number, std::size_t end, const char* what) {
-    if (!(number >= 0.0) || number >= static_cast<double>(end) || number != std::floor(number))
-        throw DataError("recording", "the number of " + std::string(what) + " is none",
-                        "record the stage again, or take another copy of the folder");
-    return static_cast<std::size_t>(number);
-}
-
 } // namespace stages
 
 } // namespace lumorph

@@ -39,13 +39,4 @@ struct LightBeside {
 /// Refuses what held-out light contradicts, says where there was none, and sums up.
 void judgePlaces(PlacedDevices& result);
 
-/// Decoded light as a table of camera and projector pixels, with the number of the look as its first column.
-inline const std::vector<std::string> kLightColumns{"look", "camera_column", "camera_row", "light_column", "light_row"};
-void addLight(RecordedTable& table, std::size_t look, const std::vector<ProjectorPoint>& light);
-/// By looks; at least `looks`. Throws DataError for a number that is none of a look.
-[[nodiscard]] std::vector<std::vector<ProjectorPoint>> lightOf(const RecordedTable& table, std::size_t looks);
-
-/// A number of a table that counts something, less than `end`. Throws DataError.
-[[nodiscard]] std::size_t indexIn(double number, std::size_t end, const char* what);
-
 } // namespace lumorph::stages

@@ -130,10 +130,11 @@ struct DriftWatch::Data {
         CoarseShow sent;
         cv::Mat1f seen; ///< blurred
     };
-    Glance glance(const ShowLook& show);
+    Glance glance(const ShowLook& show, const Progress& progress);
     [[nodiscard]] std::optional<NoVerdict> obstacleOf(const cv::Mat1f& seen, const cv::Mat1f& predicted, int unlike,
                                                       int alike) const;
-    [[nodiscard]] std::vector<CellShift> shiftsOf(const cv::Mat1f& predicted, const cv::Mat1f& seen) const;
+    [[nodiscard]] std::vector<CellShift> shiftsOf(const cv::Mat1f& predicted, const cv::Mat1f& seen,
+                                                  const Progress& progress) const;
     void learnGain(std::vector<double> gains);
     void gather(const Glance& glance);
     [[nodiscard]] Eigen::MatrixXd known(const Eigen::MatrixXd& matrix) const;
@@ -171,10 +172,12 @@ std::optional<NoVerdict> DriftWatch::Data::obstacleOf(const cv::Mat1f& seen, con
                      "look whether something stands in its sight; else check the room with patterns"};
 }
 
-DriftWatch::Data::Glance DriftWatch::Data::glance(const ShowLook& show) {
+DriftWatch::Data::Glance DriftWatch::Data::glance(const ShowLook& show, const Progress& progress) {
     Glance glance;
     glance.sent = prediction.coarse(show.sent, show.strokes);
+    progress.throwIfCancelled();
     cv::Mat1f predicted = prediction.predict(glance.sent, show.strokes), seen;
+    progress.throwIfCancelled();
     if (show.photograph.empty()) {
         glance.obstacle =
             NoVerdict{Obstacle::cameraLost, "the camera gives no picture", "look whether it is plugged in"};
@@ -198,7 +201,7 @@ DriftWatch::Data::Glance DriftWatch::Data::glance(const ShowLook& show) {
     const LightModel model(prediction.room(), parts, options.camera);
     int unlike = 0;
     std::vector<double> gains;
-    const std::vector<CellShift> shifts = shiftsOf(predicted, seen);
+    const std::vector<CellShift> shifts = shiftsOf(predicted, seen, progress);
     for (std::size_t i = 0; i < cells.size(); ++i) {
         const WatchCell& cell = cells[i];
         const CellShift& shift = shifts[i];
@@ -215,16 +218,21 @@ DriftWatch::Data::Glance DriftWatch::Data::glance(const ShowLook& show) {
     glance.obstacle = obstacleOf(seen, predicted, unlike, static_cast<int>(glance.equations.size()));
     if (glance.obstacle) return glance;
     learnGain(std::move(gains));
+    progress.throwIfCancelled();
     silhouettes.look(show.seconds, glance.sent, show.strokes, sharp, sharpSeen, gain);
     return glance;
 }
 
 /// Of all cells. At first no gain is known, and noise over faint content is no other content: the cells that are alike
 /// tell which content is faint. Where too few do, everything counts.
-std::vector<CellShift> DriftWatch::Data::shiftsOf(const cv::Mat1f& predicted, const cv::Mat1f& seen) const {
+std::vector<CellShift> DriftWatch::Data::shiftsOf(const cv::Mat1f& predicted, const cv::Mat1f& seen,
+                                                  const Progress& progress) const {
     const auto by = [&](double usual) {
         std::vector<CellShift> shifts;
-        for (const WatchCell& cell : cells) shifts.push_back(shiftOf(predicted, seen, cell.place, usual));
+        for (const WatchCell& cell : cells) {
+            progress.throwIfCancelled();
+            shifts.push_back(shiftOf(predicted, seen, cell.place, usual));
+        }
         return shifts;
     };
     std::vector<CellShift> shifts = by(gain);
@@ -395,13 +403,15 @@ DriftWatch& DriftWatch::operator=(DriftWatch&&) noexcept = default;
 
 const DriftReport& DriftWatch::report() const noexcept { return data_->report; }
 
-const DriftReport& DriftWatch::look(const ShowLook& show) {
-    const Data::Glance glance = data_->glance(show);
+const DriftReport& DriftWatch::look(const ShowLook& show, const Progress& progress) {
+    const Data::Glance glance = data_->glance(show, progress);
+    progress.throwIfCancelled();
     if (data_->lastLook)
         data_->evidence.fade(std::exp(-std::max(0.0, show.seconds - *data_->lastLook) / data_->options.memory));
     data_->lastLook = show.seconds;
     data_->silhouettes.fadeTo(show.seconds);
     if (!glance.obstacle) data_->gather(glance);
+    progress.throwIfCancelled();
     data_->judge(show, glance);
     return data_->report;
 }

@@ -11,6 +11,7 @@
 #include "calibration/verify/check_pass.h"
 #include "calibration/verify/moved_part.h"
 #include "core/base/image.h"
+#include "core/base/progress.h"
 
 namespace lumorph {
 
@@ -61,8 +62,9 @@ public:
     DriftWatch& operator=(DriftWatch&&) noexcept;
 
     /// One more look, usually every five to ten seconds. Throws InvalidInput for pictures of another size than the
-    /// room's projectors have, or strokes that are none; a photograph is never thrown at.
-    const DriftReport& look(const ShowLook& show);
+    /// room's projectors have, or strokes that are none; a photograph is never thrown at. Cancelled between its
+    /// parts: then the watch is of no use any more.
+    const DriftReport& look(const ShowLook& show, const Progress& progress = {});
     [[nodiscard]] const DriftReport& report() const noexcept;
 
 private:

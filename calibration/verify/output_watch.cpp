@@ -70,8 +70,9 @@ const char* wordOf(OutputReport::State state) {
 OutputWatch::OutputWatch(const Rig& rig, const Installation& believed, const OutputWatchOptions& options)
     : options_(options), prediction_(rig, believed, options.width, options.camera) {}
 
-std::optional<OutputWatch::Blocks> OutputWatch::blocksOf(const ShowLook& show) {
+std::optional<OutputWatch::Blocks> OutputWatch::blocksOf(const ShowLook& show, const Progress& progress) {
     const cv::Mat1f predicted = prediction_.predict(show.sent, show.strokes);
+    progress.throwIfCancelled();
     if (show.photograph.empty()) return std::nullopt;
     cv::Mat1f seen;
     try {
@@ -147,8 +148,9 @@ void OutputWatch::conclude(OutputReport::State seen, double now) {
     report_ = {seen, sentenceFor(seen)};
 }
 
-const OutputReport& OutputWatch::look(const ShowLook& show) {
-    std::optional<Blocks> blocks = blocksOf(show);
+const OutputReport& OutputWatch::look(const ShowLook& show, const Progress& progress) {
+    std::optional<Blocks> blocks = blocksOf(show, progress);
+    progress.throwIfCancelled();
     if (!blocks) {
         conclude(OutputReport::State::blind, show.seconds);
         return report_;

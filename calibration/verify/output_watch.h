@@ -40,7 +40,7 @@ public:
     OutputWatch(const Rig& rig, const Installation& believed, const OutputWatchOptions& options = {});
 
     /// Throws as `DriftWatch::look`.
-    const OutputReport& look(const ShowLook& show);
+    const OutputReport& look(const ShowLook& show, const Progress& progress = {});
     [[nodiscard]] const OutputReport& report() const noexcept { return report_; }
 
 private:
@@ -57,7 +57,7 @@ private:
         double predictedSpread = 0.0, seenSpread = 0.0, seenMean = 0.0;
     };
 
-    [[nodiscard]] std::optional<Blocks> blocksOf(const ShowLook& show);
+    [[nodiscard]] std::optional<Blocks> blocksOf(const ShowLook& show, const Progress& progress);
     [[nodiscard]] static Match matchOf(const Blocks& blocks);
     [[nodiscard]] bool isBlack(const Match& match) const;
     [[nodiscard]] std::optional<bool> isFrozen(const Blocks& now) const;

@@ -295,6 +295,23 @@ TEST(DeviceCalibration, WhatTellsTooLittleOrContradictsTheRigIsRefused) {
     auto exchanged = shots; // flaps that are not those they are said to be
     for (DeviceShot& shot : exchanged) std::ranges::reverse(shot.strokes);
     EXPECT_EQ(deviceRefusal(room, exchanged).cause, Cause::modelDoesNotFit);
+    auto partly = shots; // a sixth of the light lies two pixels beside, and a hundredth anywhere
+    for (DeviceShot& shot : partly)
+        for (auto& seen : shot.light)
+            for (auto& light : seen)
+                for (std::size_t i = 0; i < light.size(); i += 6) light[i].projector.x += 2.0;
+    const Finding part = deviceRefusal(room, partly);
+    EXPECT_EQ(part.cause, Cause::modelDoesNotFit);
+    int share = 0;
+    double beside = 0.0;
+    ASSERT_EQ(std::sscanf(part.why.c_str(),
+                          "the light does not fit the device's shape: %d of 100 lit points lie on it as it was told to "
+                          "stand, the others lie %lf projector",
+                          &share, &beside),
+              2)
+        << part.why;
+    EXPECT_NEAR(share, 82, 4);
+    EXPECT_NEAR(beside, 2.0, 0.4);
     auto broken = shots;
     broken[1].strokes.pop_back();
     EXPECT_THROW((void)calibrateOnDevice(deviceRig(), broken, room.cameraNames, room.projectorNames), InvalidInput);

@@ -174,6 +174,14 @@ TEST(EndToEnd, TheWholeChainShowsWhatTheEyeShouldSee) {
         const Installation estimated = measureStages(*rig, calibrated.room, truth, 10 * seed);
         const ShownError shown = shownError(rig, estimated, truth);
         print("whole chain", shown);
+        {
+            Installation t;
+            t = estimated; t.worldFromTracker = truth.worldFromTracker; print("  true tracker", shownError(rig, t, truth));
+            t = estimated; t.bodyFromDevice = truth.bodyFromDevice; print("  true body", shownError(rig, t, truth));
+            t = estimated; t.worldFromTracker = truth.worldFromTracker; t.bodyFromDevice = truth.bodyFromDevice; print("  true both", shownError(rig, t, truth));
+            t = estimated; t.servos = truth.servos; print("  true servos", shownError(rig, t, truth));
+            t = estimated; t.projectors = truth.projectors; print("  true projectors", shownError(rig, t, truth));
+        }
         EXPECT_GE(shown.judgedBalls, 20U);
         EXPECT_GE(shown.balls.size() + 2, shown.judgedBalls) << "what is not seen at all is no small error";
         EXPECT_LE(meanOf(shown.balls), 1.5);

@@ -21,6 +21,7 @@
 #include "core/voxels/solid.h"
 #include "tests/core/scene/scenes.h"
 #include "tests/fuzz/servo_trace_seeds.h"
+#include "tests/fuzz/stage_recording_seeds.h"
 #include "tests/support/full_model.h"
 #include "tests/support/gltf_builder.h"
 #include "tests/support/natnet_frames.h"
@@ -166,6 +167,7 @@ int main(int argc, char** argv) {
               "\"device\":\"tablet\",\"source\":{\"kind\":\"table\",\"who\":\"a tracker\",\"date\":\"\","
               "\"seed\":0},\"files\":[{\"name\":\"touches.csv\",\"bytes\":" +
                   std::to_string(table.size()) + ",\"crc32\":1}]}\x1e" + table);
+    for (const auto& [name, input] : stageRecordingSeeds()) writeText(("stage_recording/stage_" + name).c_str(), input);
     CalibrationRecord calibration;
     calibration.source = {"2026-11-24T17:05:00Z", "chess:9x7:75", "graycode", {"capture"}, 0.001};
     ProcamCalibration& result = calibration.result;

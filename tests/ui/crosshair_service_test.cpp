@@ -8,7 +8,7 @@
 #include "app/studio/calibration/capture_bench.h"
 #include "app/studio/document/scene_edit.h"
 #include "calibration/lab/board_lab.h"
-#include "calibration/lab/boards_lab.h"
+#include "calibration/lab/true_room.h"
 #include "tests/support/cut_tablet.h"
 #include "tests/ui/event_loop.h"
 

@@ -1,5 +1,7 @@
 #include "app/studio/calibration/drift_service.h"
 
+#include <atomic>
+#include <chrono>
 #include <cmath>
 #include <condition_variable>
 #include <mutex>
@@ -93,10 +95,10 @@ TEST_F(DriftServiceTest, TellsADriftByOneNoticeWithOneButton) {
 TEST_F(DriftServiceTest, TellsABlackOutputWithinTenSecondsAndTakesItBack) {
     bool isBlack = false;
     const ShowCamera lab = labShowCamera(*room);
-    const auto service = serviceWith([&](const ShowLook& look, const SentShow& show) {
+    const auto service = serviceWith([&](const ShowLook& look, const SentShow& show, const Progress& progress) {
         ShowLook shown = look;
         if (isBlack) shown.sent = {Image(room->projectors.front().camera.size)};
-        return lab(shown, show);
+        return lab(shown, show, progress);
     });
     lookFor(*service, 10.0);
     EXPECT_TRUE(notices.at("calibrate").empty());
@@ -117,8 +119,8 @@ TEST_F(DriftServiceTest, TheLabsCameraSeesTheRigThatIsShown) {
     ShowLook look;
     look.sent = {Image(room->projectors.front().camera.size, {255, 255, 255, 255})};
     const SentShow show{rig, room, {}, std::vector<double>(rig->actuatorCount(), 0.2)};
-    const cv::Mat before = lab(look, show);
-    const cv::Mat after = lab(look, {higher, show.room, {}, show.strokes});
+    const cv::Mat before = lab(look, show, {});
+    const cv::Mat after = lab(look, {higher, show.room, {}, show.strokes}, {});
     EXPECT_GT(cv::norm(before, after, cv::NORM_INF), 30.0) << "its edges lie elsewhere";
 }
 
@@ -142,7 +144,8 @@ struct StuckCamera {
                 all.closedBy.push_back(std::this_thread::get_id());
             }
         };
-        return [this, opened = std::make_shared<Opened>(*this)](const ShowLook&, const SentShow&) -> cv::Mat {
+        return [this, opened = std::make_shared<Opened>(*this)](const ShowLook&, const SentShow&,
+                                                                const Progress&) -> cv::Mat {
             std::unique_lock lock(mutex);
             ++asked;
             changed.wait(lock, [this] { return isFree; });
@@ -197,9 +200,26 @@ TEST_F(DriftServiceTest, StoppingWaitsForNoCamera) {
     EXPECT_NE(camera.closedBy.back(), std::this_thread::get_id());
 }
 
+TEST_F(DriftServiceTest, TheEndWaitsForNoCamera) {
+    QElapsedTimer since;
+    std::atomic<bool> isAsked = false;
+    auto service = serviceWith([&](const ShowLook&, const SentShow&, const Progress& progress) -> cv::Mat {
+        isAsked = true; // a camera that gives no picture for long
+        for (int i = 0; i < 10'000 && !progress.cancelled(); ++i)
+            std::this_thread::sleep_for(std::chrono::milliseconds(1));
+        throw Cancelled();
+    });
+    service->look(seconds);
+    ASSERT_TRUE(test::eventually([&] { return isAsked.load(); }));
+    since.start();
+    service.reset();
+    EXPECT_LT(since.elapsed(), 50) << "milliseconds";
+}
+
 TEST_F(DriftServiceTest, SaysNothingWhereTheCameraIsAway) {
-    const auto service = serviceWith(
-        [](const ShowLook&, const SentShow&) -> cv::Mat { throw DeviceError("camera", "it is away", "plug it in"); });
+    const auto service = serviceWith([](const ShowLook&, const SentShow&, const Progress&) -> cv::Mat {
+        throw DeviceError("camera", "it is away", "plug it in");
+    });
     lookFor(*service, 20.0);
     EXPECT_EQ(service->drift().state, DriftReport::State::blind);
     ASSERT_TRUE(service->drift().obstacle);

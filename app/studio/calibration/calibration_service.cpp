@@ -19,7 +19,7 @@
 #include "app/studio/calibration/report_pdf.h"
 #include "calibration/doctor/capture_calibration.h"
 #include "calibration/doctor/sequence_check.h"
-#include "calibration/lab/boards_lab.h"
+#include "calibration/lab/true_room.h"
 #include "calibration/report/calibration_file.h"
 #include "core/base/atomic_file.h"
 #include "core/base/error.h"

@@ -10,8 +10,8 @@
 #include <opencv2/calib3d.hpp>
 #include <opencv2/imgproc.hpp>
 
-#include "calibration/lab/boards_lab.h"
 #include "calibration/lab/lab_capture.h"
+#include "calibration/lab/true_room.h"
 #include "core/base/clock.h"
 #include "core/base/error.h"
 

@@ -11,7 +11,7 @@
 
 #include "app/studio/base/notices.h"
 #include "app/studio/calibration/capture_bench.h"
-#include "calibration/lab/boards_lab.h"
+#include "calibration/lab/true_room.h"
 #include "calibration/report/calibrated_room.h"
 #include "calibration/solve/crosshair_points.h"
 #include "core/base/error.h"

@@ -87,7 +87,8 @@ ShowCamera labShowCamera(Installation truth) {
         std::vector<double> strokes;
         std::unique_ptr<CheckLab> lab;
     };
-    return [truth = std::move(truth), bend = std::make_shared<Bend>()](const ShowLook& look, const SentShow& show) {
+    return [truth = std::move(truth), bend = std::make_shared<Bend>()](const ShowLook& look, const SentShow& show,
+                                                                       const Progress& progress) {
         if (!bend->lab || bend->rig != show.rig || bend->strokes != show.strokes) {
             CheckLabOptions options;
             options.isLinear = false;
@@ -95,16 +96,17 @@ ShowCamera labShowCamera(Installation truth) {
             bend->rig = show.rig;
             bend->strokes = show.strokes;
         }
+        progress.throwIfCancelled();
         return bend->lab->photograph(look.sent);
     };
 }
 
 ShowCamera machineShowCamera(const std::string& address) {
     auto camera = std::make_shared<std::unique_ptr<CaptureCamera>>();
-    return [address, camera](const ShowLook&, const SentShow&) {
+    return [address, camera](const ShowLook&, const SentShow&, const Progress& progress) {
         if (!*camera) *camera = openCaptureCamera(address);
         try {
-            return (*camera)->grab({});
+            return (*camera)->grab(progress);
         } catch (const DeviceError&) {
             camera->reset(); // plugged in again it is another
             throw;
@@ -149,14 +151,14 @@ private:
             const int wanted = wanted_;
             lock.unlock();
             if (wanted != ofCamera_) camera_ = nullptr;
-            if (task) perform(*std::move(task), wanted);
+            if (task) perform(*std::move(task), wanted, Progress({}, stop));
             lock.lock();
         }
         lock.unlock();
         camera_ = nullptr;
     }
 
-    void perform(Task task, int wanted) {
+    void perform(Task task, int wanted, const Progress& progress) {
         std::optional<DriftReport> drift;
         OutputReport output;
         if (task.camera) {
@@ -164,7 +166,9 @@ private:
             ofCamera_ = task.session;
         }
         try {
-            if (task.session == wanted) std::tie(drift, output) = look(task);
+            if (task.session == wanted) std::tie(drift, output) = look(task, progress);
+        } catch (const Cancelled&) {
+            return; // the service is at its end
         } catch (const std::exception& error) {
             output = {OutputReport::State::blind, error.what()};
         }
@@ -173,23 +177,27 @@ private:
             Qt::QueuedConnection);
     }
 
-    std::pair<std::optional<DriftReport>, OutputReport> look(const Task& task) {
+    std::pair<std::optional<DriftReport>, OutputReport> look(const Task& task, const Progress& progress) {
         const bool isOther = task.session != session_ || rig_ != task.show.rig || room_ != task.show.room;
         if (isOther) begin(task);
         ShowLook look{task.seconds, {}, {}, {}};
-        for (std::size_t i = 0; i < room_->projectors.size(); ++i)
+        for (std::size_t i = 0; i < room_->projectors.size(); ++i) {
+            progress.throwIfCancelled();
             look.sent.push_back(i < task.show.pictures.size()
                                     ? sentImage(task.show.pictures[i], room_->projectors[i].camera.size)
                                     : Image());
+        }
         look.strokes = standingStrokes(*room_, *rig_, task.show.strokes, StrokesFrom::anywhere);
         try {
-            look.photograph = camera_(look, task.show);
+            look.photograph = camera_(look, task.show, progress);
+        } catch (const Cancelled&) {
+            throw;
         } catch (const std::exception&) {
             look.photograph.release(); // both watches say that the camera gives nothing
         }
         std::optional<DriftReport> drift;
-        if (task.isForDrift) drift = drift_->look(look);
-        return {drift, output_->look(look)};
+        if (task.isForDrift) drift = drift_->look(look, progress);
+        return {drift, output_->look(look, progress)};
     }
 
     void begin(const Task& task) {

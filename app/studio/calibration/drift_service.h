@@ -15,6 +15,7 @@
 #include "app/studio/rendering/show_feed.h"
 #include "calibration/verify/drift_watch.h"
 #include "calibration/verify/output_watch.h"
+#include "core/base/progress.h"
 
 class QTimer;
 
@@ -41,8 +42,8 @@ public:
 [[nodiscard]] std::unique_ptr<SentShowSource> sentShowOf(ShowFeed& feed);
 
 /// Takes the photograph of a look, of which all else is set; runs beside the window, one call at a time, and may throw:
-/// then the camera gives nothing.
-using ShowCamera = std::function<cv::Mat(const ShowLook& look, const SentShow& show)>;
+/// then the camera gives nothing. Cancelled it returns soon.
+using ShowCamera = std::function<cv::Mat(const ShowLook& look, const SentShow& show, const Progress& progress)>;
 /// The virtual lab's camera, in a room that truly is so.
 [[nodiscard]] ShowCamera labShowCamera(Installation truth);
 /// A camera of this machine, such as "/dev/video0", opened with the first look and again after it failed.
@@ -62,7 +63,7 @@ public:
     /// `check`: what the notices' button does.
     DriftService(std::unique_ptr<SentShowSource> show, ShowCameraChooser choose, Notices& notices,
                  std::function<void()> check, QObject* parent = nullptr);
-    ~DriftService() override; ///< the only call that waits for a look that runs: for the end of the program
+    ~DriftService() override; ///< cancels a look that runs; a part of what it computes may still be waited for
 
     /// Begins anew, or ends; what was said is taken back. The camera is closed beside the window, as soon as it has
     /// answered; a watch that begins before that looks then, through a camera of its own.

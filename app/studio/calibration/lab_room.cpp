@@ -1,6 +1,6 @@
 #include "app/studio/calibration/lab_room.h"
 
-#include "calibration/lab/boards_lab.h"
+#include "calibration/lab/true_room.h"
 
 namespace lumorph::studio {
 namespace {
