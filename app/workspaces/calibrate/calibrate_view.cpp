@@ -75,9 +75,9 @@ public:
 private:
     QWidget* makeBar() {
         auto* bar = new QWidget(this);
-        auto* row = new QHBoxLayout(bar);
-        row->setContentsMargins(0, 0, 0, 0);
-        row->setSpacing(8);
+        auto* rows = new QVBoxLayout(bar); // side by side they are cut in a narrow window
+        rows->setContentsMargins(0, 0, 0, 0);
+        rows->setSpacing(8);
         segments_ = new Segments(
             {{"calibrate.show.live", "Live", "What the camera sees now"},
              {"calibrate.show.white", "Picture", "The chosen pose under white light, with the board's points"},
@@ -97,9 +97,11 @@ private:
         poseName_ = new QLabel(bar);
         poseName_->setObjectName("calibrate.poseName");
         poseName_->setProperty("look", "heading");
-        row->addWidget(segments_);
-        row->addStretch(1);
+        rows->addWidget(segments_, 0, Qt::AlignLeft);
+        auto* row = new QHBoxLayout;
+        rows->addLayout(row);
         row->addWidget(poseName_);
+        row->addStretch(1);
         rest_ = makeCommandButton(parts_.studio.commands.find("calibrate.rest"), "calibrate.rest", bar);
         row->addWidget(rest_);
         another_ = makeCommandButton(parts_.studio.commands.find("calibrate.another"), "calibrate.another", bar);
