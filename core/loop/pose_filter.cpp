@@ -13,17 +13,17 @@ namespace {
 constexpr double kPlaceNoise = 0.25e-3; // metres, of a good tracker
 constexpr double kTurnNoise = 2e-3;     // radians, likewise
 constexpr double kTurnUnit = 6.0;       // radians that a hand turns while it moves by a metre
-constexpr double kRestWay = 0.5e-3;     // metres
+constexpr double kRestWay = 0.44e-3;    // metres
 constexpr double kRestSpeed = 0.015;    // metres a second
 constexpr double kRestTurn = 3e-3;      // radians
 constexpr double kRestTurning = 0.1;    // radians a second
 
 constexpr double kRestSeconds = 0.15;      // over which samples are averaged at rest
-constexpr double kLongRest = 0.4;          // likewise, of what has rested for as long
+constexpr double kLongRest = 0.7;          // likewise, of what has rested for as long
 constexpr double kNoiseSeconds = 0.7;      // over which the noise of samples is averaged
 constexpr double kSlowestNoise = 0.055;    // seconds between samples that tell their noise
 constexpr double kMostNoise = 8.0;         // times what is expected
-constexpr double kCalmSeconds = 0.12;      // in which motion is forgotten
+constexpr double kCalmSeconds = 0.2;       // in which motion is forgotten
 constexpr double kJump = 0.02;             // metres that no motion makes between two samples
 constexpr double kJumpTurn = 0.5;          // radians, likewise
 constexpr double kMostAcceleration = 30.0; // metres a second squared
