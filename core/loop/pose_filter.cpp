@@ -64,7 +64,7 @@ void NoiseJudge::look(const glm::dvec3& way, double seconds) {
         sample.seconds += seconds;
         sample.place -= way;
     }
-    std::ranges::rotate(samples_, samples_.end() - 1);
+    std::rotate(samples_.begin(), samples_.end() - 1, samples_.end());
     samples_[0] = {};
     count_ = std::min(count_ + 1, samples_.size());
     slow_ = seconds > kSlowestNoise;

@@ -241,7 +241,9 @@ TEST(TrackCommand, ReplayComparesThePredictionWithConstantVelocity) {
         EXPECT_LE(json["rmsMm"].get<double>(), 0.7 * json["constantVelocity"]["rmsMm"].get<double>());
         EXPECT_GT(json["p95Mm"].get<double>(), json["rmsMm"].get<double>());
         EXPECT_GT(json["constantVelocity"]["p95Mm"].get<double>(), json["p95Mm"].get<double>());
-        if (before.is_object()) EXPECT_EQ(json, before) << "blanks are as good as commas";
+        if (before.is_object()) {
+            EXPECT_EQ(json, before) << "blanks are as good as commas";
+        }
         before = json;
     }
     const Outcome seconds =
