@@ -43,5 +43,7 @@ void addLabRegisterCommand(CLI::App& group, Session& session);
 /// Nor are these: devices and trackers are reached through Qt.
 void addDeviceCommands(CLI::App& app, Session& session);
 void addTrackCommand(CLI::App& app, Session& session);
+/// Into the group of the track commands.
+void addTrackReplay(CLI::App& group, Session& session);
 
 } // namespace lumorph::cli

@@ -202,11 +202,12 @@ void addBoard(CLI::App& group) {
 } // namespace
 
 void addTrackCommand(CLI::App& app, Session& session) {
-    CLI::App* group = app.add_subcommand("track", "Look at what trackers send");
+    CLI::App* group = app.add_subcommand("track", "Look at what trackers send, and at recorded motion");
     group->require_subcommand(1);
     addMonitor(*group, session);
     addCameras(*group);
     addBoard(*group);
+    addTrackReplay(*group, session);
 }
 
 } // namespace lumorph::cli

@@ -40,16 +40,20 @@ template <typename Row> void forEachRow(std::string_view text, const std::string
     }
 }
 
-/// The next number and the comma behind it.
+/// The next number and the comma or blank behind it.
 std::optional<double> takeNumber(std::string_view& line, bool last) {
     line = trimmed(line);
     double value = 0.0;
     const auto [next, error] = std::from_chars(line.data(), line.data() + line.size(), value);
     if (error != std::errc() || !std::isfinite(value)) return std::nullopt;
-    line = trimmed(line.substr(static_cast<std::size_t>(next - line.data())));
+    const std::string_view rest = line.substr(static_cast<std::size_t>(next - line.data()));
+    line = trimmed(rest);
     if (last) return line.empty() ? std::optional(value) : std::nullopt;
-    if (line.empty() || line.front() != ',') return std::nullopt;
-    line.remove_prefix(1);
+    if (line.empty()) return std::nullopt;
+    if (line.front() == ',')
+        line.remove_prefix(1);
+    else if (line.size() == rest.size())
+        return std::nullopt;
     return value;
 }
 
@@ -66,7 +70,7 @@ TimedPose timedPoseOf(std::string_view line, const std::string& place) {
     double n[8] = {};
     if (!takeNumbers(line, n))
         throw DataError(place, "it is not eight finite numbers: " + inQuotes(line, 60),
-                        "write time, x, y, z, qx, qy, qz, qw with commas, in seconds and metres");
+                        "write time, x, y, z, qx, qy, qz, qw with commas or blanks between, in seconds and metres");
     const glm::dquat rotation(n[7], n[4], n[5], n[6]); // glm takes w first
     const double length = glm::length(rotation);
     if (std::abs(length - 1.0) > kNormTolerance)

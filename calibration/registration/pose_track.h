@@ -21,7 +21,8 @@ struct PoseTrack {
     std::vector<Finding> warnings; ///< rows that were left out, and why
 };
 
-/// Reads rows `time,x,y,z,qx,qy,qz,qw` (seconds, metres); `#` begins a comment, blanks may stand anywhere. A row with
+/// Reads rows `time,x,y,z,qx,qy,qz,qw` (seconds, metres); `#` begins a comment, blanks may stand anywhere, also in
+/// place of the commas. A row with
 /// the time of the one before is left out with a warning. Throws DataError with the line for a row that is no pose (not
 /// eight finite numbers, a quaternion whose length is not 1 within 2 %), CaptureRefused for a clock that goes back,
 /// for fewer than two poses and for places farther than 200 m, which are millimetres or centimetres. `name` is the

@@ -1,51 +1,19 @@
 #pragma once
 
+#include <array>
+#include <cstddef>
+
 #include <glm/gtc/quaternion.hpp>
-#include <glm/mat3x3.hpp>
 #include <glm/vec3.hpp>
 
+#include "core/loop/motion_predictor.h"
 #include "core/loop/pose_stream.h"
 
 namespace lumorph {
 
-/// Kalman filter of a point in space whose acceleration wanders and fades: the more, the livelier it has been of late.
-/// Its state is where it is, seen from where it was thought to be, its velocity and its acceleration. The same for each
-/// of the three axes. A jolt that the state cannot explain opens the velocity, so that it is found again at once.
-class MotionFilter {
-public:
-    struct Noise {
-        double measured = 0.0; ///< standard deviation of a sample, per axis
-        double jerk = 0.0;     ///< square root of its spectral density, of slow motion
-        double lively = 0.0;   ///< by how much the jerk grows with each unit of acceleration, as a share
-        double velocity = 0.0; ///< what is expected of a thing just found, standard deviation
-        double acceleration = 0.0;
-    };
-    explicit MotionFilter(const Noise& noise) : noise_(noise) { restart(); }
-    /// Samples are noisier than was thought, or less: their standard deviation per axis.
-    void setMeasured(double sigma) noexcept { noise_.measured = sigma; }
-
-    /// It has just been found, and nothing is known of its motion.
-    void restart();
-    /// Time passes; gives the way made meanwhile.
-    glm::dvec3 advance(double seconds);
-    /// It was measured `off` from where it was thought to be; gives the way that it is put right by.
-    glm::dvec3 correct(const glm::dvec3& off);
-
-    /// Way from now to `seconds` later.
-    [[nodiscard]] glm::dvec3 wayIn(double seconds) const;
-    [[nodiscard]] const glm::dvec3& velocity() const noexcept { return velocity_; }
-
-private:
-    Noise noise_;
-    glm::dvec3 velocity_{0.0};
-    glm::dvec3 acceleration_{0.0};
-    glm::dmat3 covariance_{0.0}; ///< of place, velocity and acceleration along one axis
-    double usual_ = 0.0;         ///< length of the acceleration of late
-    double step_ = 0.0;          ///< seconds of the last advance
-};
-
-/// How noisy samples are: by their third differences, in which no motion of a hand is left at 40 samples a second and
-/// more. A filter that trusts a noisy tracker too much swings when it looks ahead.
+/// How noisy samples are: by what a polynomial of the fourth degree leaves of six of them, at any times. No motion of a
+/// hand is left at 20 samples a second and more. A filter that trusts a noisy tracker too much swings when it looks
+/// ahead.
 class NoiseJudge {
 public:
     /// Never less than `least`, which is also what slower samples are taken to have.
@@ -60,10 +28,17 @@ public:
     [[nodiscard]] double excess() const { return sigma() / least_; }
 
 private:
+    struct Earlier {
+        double seconds = 0.0;  ///< before the newest sample
+        glm::dvec3 place{0.0}; ///< from the newest
+    };
+    /// Variance per axis that the six samples speak for.
+    [[nodiscard]] double leftSquare() const;
+
     double least_, square_;
-    glm::dvec3 before_{0.0}, beforeThat_{0.0}; ///< ways
-    double seconds_ = 0.0;                     ///< of the last
-    int count_ = 0;                            ///< of ways in even times, at most 2
+    std::array<Earlier, 6> samples_{}; ///< the newest first
+    std::size_t count_ = 0;            ///< of samples that count, less the first
+    bool slow_ = false;
 };
 
 /// Tells rest from motion, so that a thing at rest is still: its samples are averaged for long, and nothing is
@@ -72,17 +47,20 @@ class RestJudge {
 public:
     /// Ways below `way` and speeds below `speed` are noise; it is wholly in motion at three times as much.
     RestJudge(double way, double speed) : way_(way), speed_(speed) {}
-    void restart() { excess_ = 0.0; }
-    /// `way` from where it rested, `speed` as the motion filter has it; samples are `noise` times noisier than
+    void restart() { excess_ = rested_ = 0.0; }
+    /// `way` from where it rested, `speed` as the predictor has it; samples are `noise` times noisier than
     /// expected, and so are both.
     void look(double way, double speed, double seconds, double noise);
     /// 0 at rest, 1 in motion.
     [[nodiscard]] double motion() const;
+    /// By how much the mean of a thing at rest follows a sample: the less, the longer it has rested.
+    [[nodiscard]] double share(double seconds) const;
 
 private:
     double way_;
     double speed_;
     double excess_ = 0.0; ///< 1 where noise ends
+    double rested_ = 0.0; ///< seconds
 };
 
 /// The filter behind a PoseStream.
@@ -97,20 +75,23 @@ public:
     [[nodiscard]] Pose at(double seconds) const;
 
 private:
-    void addPosition(const glm::dvec3& measured, double seconds);
-    void addRotation(const glm::dquat& measured, double seconds);
+    void restartPosition(const glm::dvec3& measured);
+    void restartRotation(const glm::dquat& measured);
+    void addPosition(const glm::dvec3& measured, const HandSteps& passed);
+    void addRotation(const glm::dquat& measured, const HandSteps& passed);
+    /// At that place in the sum of all turns.
+    [[nodiscard]] glm::dquat rotationAt(const glm::dvec3& turnSum) const;
 
-    MotionFilter moving_;
+    MotionPredictor moving_;
     RestJudge moves_;
     NoiseJudge places_;
     glm::dvec3 measuredPosition_{0.0};
-    glm::dvec3 position_{0.0};
     glm::dvec3 restPosition_{0.0};
-    MotionFilter turning_;
+    MotionPredictor turning_; ///< of the sum of all turns from sample to sample, rotation vectors in `world`
     RestJudge turns_;
     NoiseJudge rotations_;
     glm::dquat measuredRotation_{1.0, 0.0, 0.0, 0.0};
-    glm::dquat rotation_{1.0, 0.0, 0.0, 0.0};
+    glm::dvec3 turnSum_{0.0}; ///< of `measuredRotation_`
     glm::dquat restRotation_{1.0, 0.0, 0.0, 0.0};
 };
 

@@ -218,5 +218,61 @@ TEST(TrackCommand, WritesABoardToPrint) {
     EXPECT_TRUE(lumorph({"track", "cameras", "--json"}).json().is_array());
 }
 
+/// A body that swings along x for six seconds, 100 poses a second, with `comma` between the numbers.
+std::string swingRows(const char* comma) {
+    std::ostringstream rows;
+    rows << "# time x y z qx qy qz qw\n" << std::fixed;
+    for (int k = 0; k < 600; ++k) {
+        const double x = 0.08 * std::sin(0.04 * k);
+        rows << 0.01 * k << comma << x << comma << 0.8 << comma << 0 << comma << 0 << comma << 0 << comma << 0 << comma
+             << 1 << "\n";
+    }
+    return rows.str();
+}
+
+TEST(TrackCommand, ReplayComparesThePredictionWithConstantVelocity) {
+    nlohmann::json before;
+    for (const char* comma : {",", " "}) {
+        const Outcome outcome =
+            lumorph({"track", "replay", "-", "--ahead", "50ms", "--noise", "1mm", "--json"}, swingRows(comma));
+        ASSERT_EQ(outcome.exitCode, 0) << outcome.err;
+        const nlohmann::json json = outcome.json();
+        EXPECT_GT(json["rmsMm"].get<double>(), 0.1);
+        EXPECT_LE(json["rmsMm"].get<double>(), 0.7 * json["constantVelocity"]["rmsMm"].get<double>());
+        EXPECT_GT(json["p95Mm"].get<double>(), json["rmsMm"].get<double>());
+        EXPECT_GT(json["constantVelocity"]["p95Mm"].get<double>(), json["p95Mm"].get<double>());
+        if (before.is_object()) {
+            EXPECT_EQ(json, before) << "blanks are as good as commas";
+        }
+        before = json;
+    }
+    const Outcome seconds =
+        lumorph({"track", "replay", "-", "--ahead", "0.05s", "--noise", "0.001m", "--json"}, swingRows(","));
+    EXPECT_EQ(seconds.json(), before);
+    const Outcome seed = lumorph({"track", "replay", "-", "--seed", "2", "--json"}, swingRows(","));
+    EXPECT_NE(seed.json(), before);
+    EXPECT_THAT(lumorph({"track", "replay", "-"}, swingRows(",")).out, HasSubstr("constant velocity"));
+}
+
+TEST(TrackCommand, ReplaySaysWhatIsWrong) {
+    const struct {
+        std::vector<std::string> options;
+        std::string rows;
+        const char* said;
+    } wrong[] = {{{}, "", "two poses"},
+                 {{}, "0,0,0,0,0,0,0,1\n0.1,0,zero,0,0,0,0,1\n", "line 2"},
+                 {{"--ahead", "20s"}, swingRows(","), "a second longer than the time ahead"},
+                 {{"--ahead", "50"}, swingRows(","), "ms or s"},
+                 {{"--ahead", "-5ms"}, swingRows(","), "ms or s"},
+                 {{"--noise", "1cm"}, swingRows(","), "mm or m"}};
+    for (const auto& row : wrong) {
+        std::vector<std::string> words = {"track", "replay", "-"};
+        words.insert(words.end(), row.options.begin(), row.options.end());
+        const Outcome outcome = lumorph(words, row.rows);
+        EXPECT_NE(outcome.exitCode, 0) << row.said;
+        EXPECT_THAT(outcome.err, HasSubstr(row.said));
+    }
+}
+
 } // namespace
 } // namespace lumorph::test
