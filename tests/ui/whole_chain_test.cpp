@@ -410,7 +410,7 @@ void WholeChainAtTheTable::measureMoving(const char* link) {
             table->strokes = horns;
             return chain.button() != "Cancel";
         },
-        600s))
+        1200s))
         << chain.story();
 }
 
