@@ -1,5 +1,6 @@
 #include "core/scene/measured_sigma.h"
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
@@ -21,6 +22,9 @@ constexpr std::array kUnits{
     Unit{" mm", 1e-3, &MeasuredSigma::metres}, Unit{kDegrees, std::numbers::pi / 180.0, &MeasuredSigma::radians},
     Unit{" ms", 1e-3, &MeasuredSigma::seconds}, Unit{" mm of the tip", 1e-3, &MeasuredSigma::tipMetres}};
 
+/// Of each unit: what devices without noise say has no figure that anybody would believe.
+constexpr double kLeast = 1e-3;
+
 /// Three digits that count, with a point whatever the locale.
 std::string textOf(double value) {
     std::array<char, 64> text{};
@@ -35,7 +39,7 @@ std::string withSigma(std::string method, const MeasuredSigma& sigma) {
         const double value = sigma.*unit.figure / unit.inSi;
         if (!std::isfinite(value) || !(value > 0.0)) continue;
         if (!method.empty()) method += ", ";
-        method += std::string(kPlusMinus) + textOf(value) + std::string(unit.name);
+        method += std::string(kPlusMinus) + textOf(std::max(value, kLeast)) + std::string(unit.name);
     }
     return method;
 }
