@@ -11,7 +11,7 @@
 namespace lumorph {
 namespace {
 
-constexpr double kSettles = 1.0, kFollowed = 10.0; // seconds
+constexpr double kSettles = 2.0, kFollowed = 40.0; // seconds: at rest errors last nearly one
 constexpr double kPhase = 0.5;                     // of the time between two samples: when a frame asks, in the mean
 
 glm::dvec3 placeAt(const CarryingHand& hand, double seconds) {

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <span>
 
 #include <glm/geometric.hpp>
 #include <glm/gtc/matrix_access.hpp>
@@ -143,7 +145,7 @@ void MotionPredictor::restart(const glm::dvec3& place) {
     for (MotionFilter& filter : filters_) filter.restart(place, measured_, unit_);
     squares_.fill(0.0);
     weights_.fill(1.0 / double(kFilters));
-    promises_.clear();
+    open_ = 0;
     place_ = place;
 }
 
@@ -156,25 +158,30 @@ void MotionPredictor::add(const glm::dvec3& place, const HandSteps& passed) {
         filters_[k].correct(place, measured_);
     }
     place_ = place;
-    if (!promises_.empty() && kJudgedAhead - promises_.back().seconds < kJudgedEvery) return;
-    promises_.push_back({kJudgedAhead, {}});
+    static_assert(double(kPromises - 1) * kJudgedEvery > kJudgedAhead);
+    if (open_ > 0 && kJudgedAhead - promises_[open_ - 1].seconds < kJudgedEvery) return;
+    Promise& promise = promises_[open_++];
+    promise.seconds = kJudgedAhead;
     for (std::size_t k = 0; k < kFilters; ++k)
-        promises_.back().places[k] = filters_[k].after(judgedSteps().steps[k / kLivelinesses].transition);
+        promise.places[k] = filters_[k].after(judgedSteps().steps[k / kLivelinesses].transition);
 }
 
 void MotionPredictor::judge(const glm::dvec3& place, double seconds) {
     const double kept = std::exp(-seconds / kJudgedSeconds);
     for (double& square : squares_) square *= kept;
-    for (Promise& promise : promises_) {
+    std::size_t judged = 0;
+    for (Promise& promise : std::span(promises_).first(open_)) {
         promise.seconds -= seconds;
         if (promise.seconds > 0.0) continue;
+        ++judged;
         const glm::dvec3 then = place + (promise.seconds / seconds) * (place - place_);
         for (std::size_t k = 0; k < kFilters; ++k) {
             const glm::dvec3 off = promise.places[k] - then;
             squares_[k] += glm::dot(off, off);
         }
     }
-    std::erase_if(promises_, [](const Promise& promise) { return promise.seconds <= 0.0; });
+    std::shift_left(promises_.begin(), promises_.begin() + std::ptrdiff_t(open_), std::ptrdiff_t(judged));
+    open_ -= judged;
     weigh();
 }
 

@@ -2,7 +2,6 @@
 
 #include <array>
 #include <cstddef>
-#include <vector>
 
 #include <glm/mat4x4.hpp>
 #include <glm/vec3.hpp>
@@ -89,10 +88,12 @@ private:
 
     double measured_, unit_;
     std::array<MotionFilter, kFilters> filters_;
-    std::array<double, kFilters> weights_{}; ///< their sum is 1
-    std::array<double, kFilters> squares_{}; ///< of late, of what each predicted wrongly
-    std::vector<Promise> promises_;          ///< the earliest first
-    glm::dvec3 place_{0.0};                  ///< of the last sample
+    std::array<double, kFilters> weights_{};     ///< their sum is 1
+    std::array<double, kFilters> squares_{};     ///< of late, of what each predicted wrongly
+    static constexpr std::size_t kPromises = 10; ///< more than are open at a time
+    std::array<Promise, kPromises> promises_;    ///< the earliest first; no memory is asked for between two samples
+    std::size_t open_ = 0;                       ///< of them, that are not judged yet
+    glm::dvec3 place_{0.0};                      ///< of the last sample
 };
 
 } // namespace lumorph
