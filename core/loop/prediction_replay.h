@@ -17,7 +17,7 @@ struct PlaceError {
 struct PredictionReplay {
     PlaceError predicted;
     /// Of the newest sample and a velocity that is the difference of the newest sample and one `velocitySeconds`
-    /// earlier. That time is the one of 20 to 250 ms that serves best on this very recording, which nobody knows while
+    /// earlier. That time is the one of 20 to 250 ms that serves best on this very recording, which is not known while
     /// a body moves: constant velocity at its best.
     PlaceError constantVelocity;
     double velocitySeconds = 0.0;

@@ -177,8 +177,7 @@ TEST(EndToEnd, TheWholeChainShowsWhatTheEyeShouldSee) {
         print("whole chain", shown);
         means.push_back(meanOf(shown.balls));
         EXPECT_GE(shown.judgedBalls, 20U);
-        // What is not seen at all is no small error. A few lie where the sheet is cut: the least shift hides them.
-        EXPECT_GE(shown.balls.size() + (seed == 1 ? 2 : 6), shown.judgedBalls);
+        EXPECT_GE(shown.balls.size() + 2, shown.judgedBalls) << "what is not seen at all is no small error";
         EXPECT_LE(meanOf(shown.balls), 1.5);
         EXPECT_LE(meanOf(shown.skinPixels), 1.5);
         EXPECT_LE(std::abs(estimated.predictionSeconds - truth.predictionSeconds), 0.002);
@@ -202,7 +201,7 @@ TEST(EndToEnd, TheWholeChainShowsWhatTheEyeShouldSee) {
     }
     std::printf("whole chain: mean %.2f eye pixels of %zu rooms, most %.2f\n", meanOf(means), means.size(),
                 quantileOf(means, 1.0));
-    EXPECT_LE(meanOf(means), 0.55);
+    EXPECT_LE(meanOf(means), 0.5);
 }
 
 } // namespace

@@ -25,7 +25,7 @@ enum class LinkWay { lab, live, files };
 struct ChainState {
     CalibrationSession session; ///< a link has the number of its stage
     std::size_t chosen = 0;
-    double fraction = 0.0; ///< of what is measured now; negative: nobody knows
+    double fraction = 0.0; ///< of what is measured now; negative: unknown
     QString stage;
     LinkWay way = LinkWay::lab;    ///< of links that can be measured so; the others are measured in the lab
     std::optional<LiveStand> live; ///< what is done just now with the connected tracker
