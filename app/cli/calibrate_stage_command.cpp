@@ -286,6 +286,7 @@ void measureAll(const StageArguments& arguments, const Session& session) {
     nlohmann::json results = nlohmann::json::array(), ended;
     std::optional<std::size_t> place;
     std::string why;
+    bool isWritten = false;
     while (const auto turn = chain.nextOfRest()) {
         // Boards measure one projector as they measure several.
         place = calibrationStages()[*turn].hasSequence() ? placeOfStage("room") : *turn;
@@ -294,13 +295,17 @@ void measureAll(const StageArguments& arguments, const Session& session) {
         try {
             takeTurn(chain, *place, arguments, contents, project, results, progress.part(from, from + each));
         } catch (const Cancelled&) {
-            throw;
+            if (!isWritten) throw;
+            why = "it was stopped; what was measured before it stays in the project";
+            chain.fail(*place, "");
         } catch (const std::exception& error) {
             why = error.what();
             chain.fail(*place, why);
         }
         chain.follow(project.installation);
-        if (arguments.apply.apply) writeProject(project, file);
+        if (!arguments.apply.apply) continue;
+        writeProject(project, file);
+        isWritten = true;
     }
     if (const auto next = chain.next(); next && why.empty()) {
         place = next;

@@ -5,7 +5,7 @@
 #include "calibration/stages/stage_tables.h"
 #include "core/base/error.h"
 
-// A recording of a check has how the device was told to stand, and the photographs of each projector's patterns then.
+// A recording of a check: the strokes that were commanded, and each projector's patterns as photographed in that stand.
 
 namespace lumorph {
 

@@ -32,7 +32,7 @@ constexpr int kMostPixels = 16'384; // of a picture's side
 constexpr std::size_t kMostColumns = 256;
 constexpr const char* kTruthFile = "truth.json";
 constexpr std::size_t kPackedFrom = 1'000'000; // bytes of a table: what people read as it is stays as it is
-constexpr int kGzip = 15 + 16;                 // the format, as zlib has it told
+constexpr int kGzip = 15 + 16;                 // zlib's windowBits: the widest window, in gzip's format
 constexpr const char* kNameColumn = "name";
 
 [[noreturn]] void broken(const std::string& place, const std::string& why,

@@ -177,7 +177,7 @@ std::optional<Installation> CalibrationSession::take(std::size_t stage, StageOut
     follow(room);
     if (!isInDoubt) return std::nullopt;
     // Swings in a mirrored or wrongly scaled world fit a tip as well as true ones: only the tracker's dots tell. So the
-    // tip that was measured before does not stay as good; its figure stays, as nobody has a better one.
+    // tip that was measured before does not stay as good; its figure stays, because there is no better one.
     outcomes_.erase(placeOfStage("pointer"));
     Installation doubted = room;
     doubted.origins.pointer = {
