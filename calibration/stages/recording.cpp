@@ -304,7 +304,7 @@ StageRecording parseStageRecording(std::string_view description, const std::stri
         const auto name = valueOf<std::string>(listed[i], "name", place);
         if (!isPlainName(name)) broken(place, "it names a file " + inQuotes(name) + " that is none of its folder");
         const std::vector<std::byte> bytes = files(name);
-        const std::string file = place + ", " + name;
+        const std::string file = std::string(place).append(", ").append(name);
         const auto length = valueOf<std::uint64_t>(listed[i], "bytes", place);
         if (bytes.size() < length)
             broken(file, "it is cut short: " + std::to_string(bytes.size()) + " of " + std::to_string(length) +
