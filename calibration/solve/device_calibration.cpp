@@ -652,7 +652,7 @@ private:
         std::string by;
         if (left > 0) {
             const auto middle = others.begin() + static_cast<std::ptrdiff_t>(left / 2);
-            std::ranges::nth_element(others, middle);
+            std::nth_element(others.begin(), middle, others.end());
             std::snprintf(text, sizeof(text), ", the others lie %.1f projector pixels beside it (median)", *middle);
             by = text;
         }

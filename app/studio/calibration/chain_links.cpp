@@ -272,7 +272,7 @@ ChainLink servosLink() {
     link.isMoved = true;
     link.warning = QObject::tr("Hands off: the servos move");
     link.how = {QObject::tr("Each servo goes slowly through its levels, up and down."),
-                QObject::tr("At each of them patterns are projected and photographed: five to fifteen minutes in all."),
+                QObject::tr("At each of them patterns are projected and photographed: seven minutes or more in all."),
                 QObject::tr("STOP ends it at any time, and nothing of it is kept.")};
     link.isOnTable = true;
     return link;
