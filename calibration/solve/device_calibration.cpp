@@ -637,9 +637,9 @@ private:
         std::vector<double> beside;
         for (const auto& error : errorsOf(seen_.lights, state_))
             if (error) beside.push_back(cv::norm(*error));
-        const auto others =
-            std::ranges::partition(beside, [this](double pixels) { return pixels < 5.0 * noise_.projector; });
-        const auto fits = static_cast<double>(others.begin() - beside.begin());
+        const auto others = std::partition(beside.begin(), beside.end(),
+                                           [this](double pixels) { return pixels < 5.0 * noise_.projector; });
+        const auto fits = static_cast<double>(others - beside.begin());
         result_.rms = noise_.projector;
         result_.onDevice = fits / std::max<double>(1.0, static_cast<double>(seen_.lights.size()));
         char text[160];
@@ -648,11 +648,10 @@ private:
             throw misfit(text);
         }
         if (result_.onDevice >= kFitShare) return;
-        const std::size_t left = others.size();
         std::string by;
-        if (left > 0) {
-            const auto middle = others.begin() + static_cast<std::ptrdiff_t>(left / 2);
-            std::nth_element(others.begin(), middle, others.end());
+        if (const auto left = beside.end() - others; left > 0) {
+            const auto middle = others + left / 2;
+            std::nth_element(others, middle, beside.end());
             std::snprintf(text, sizeof(text), ", the others lie %.1f projector pixels beside it (median)", *middle);
             by = text;
         }
