@@ -67,6 +67,7 @@ struct Demo {
     std::unique_ptr<ShowProgram> (*program)(const ProgramStart& start, const Progress& progress) = nullptr;
     bool keeps = false;                   ///< its program wants something kept (ShowContent::keepsake)
     std::vector<DemoOption> options = {}; ///< that its program may be told
+    bool forVisitors = true;              ///< else on the host's cards alone
     bool compares = false;                ///< its program shows at `key.off` what it does with and without
 };
 

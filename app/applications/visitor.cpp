@@ -13,6 +13,7 @@ namespace {
 
 constexpr double kHandRests = 0.03; ///< radians: a device that lies or is held level
 constexpr double kStickRests = 0.08;
+constexpr double kPointerCounts = 0.6; ///< seconds after it was moved
 
 double stick(double value) { return std::isfinite(value) ? std::clamp(value, -1.0, 1.0) : 0.0; }
 
@@ -26,6 +27,7 @@ glm::dvec2 limited(const glm::dvec2& lean) {
 void Visitor::take(const ShowMoment& moment) {
     active_ = restart_ = next_ = attract_ = false;
     for (const ShowInput& input : moment.inputs) take(input);
+    pointerRests_ = holds_ ? 0.0 : pointerRests_ + moment.step;
     device_ = {};
     for (const ShowBody& body : moment.bodies)
         if (body.role == PoseRole::device) device_ = leanOf(moment.worldFromDevice);
@@ -54,6 +56,8 @@ void Visitor::take(const ShowInput& input) {
         point(input.value, &glm::dvec2::y);
     else if (input.name == "pointer.over" && held == 0.0)
         pointer_.reset();
+    else if (input.name == "pointer.held")
+        holds_ = held > 0.0;
     else if (input.name == "pad.x")
         pad_.x = stick(input.value);
     else if (input.name == "pad.y")
@@ -67,6 +71,7 @@ void Visitor::take(const ShowInput& input) {
 void Visitor::point(double value, double glm::dvec2::*axis) {
     if (!pointer_) pointer_.emplace(0.0);
     (*pointer_).*axis = stick(value);
+    pointerRests_ = 0.0;
 }
 
 void Visitor::decide(double step) {
@@ -84,6 +89,11 @@ glm::dvec2 Visitor::push() const noexcept {
 
 glm::dvec2 Visitor::lean() const noexcept {
     return limited(device_ + kMostLean * glm::clamp(push() + pointer_.value_or(glm::dvec2(0.0)), -1.0, 1.0));
+}
+
+glm::dvec2 Visitor::lively() const noexcept {
+    const bool counts = pointer_ && pointerRests_ < kPointerCounts;
+    return limited(device_ + kMostLean * glm::clamp(push() + (counts ? *pointer_ : glm::dvec2(0.0)), -1.0, 1.0));
 }
 
 glm::dvec2 leanOf(const glm::mat4& worldFromDevice) noexcept {

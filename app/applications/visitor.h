@@ -14,8 +14,8 @@ namespace lumorph {
 /// leans the device, and which of the keys that all share he pressed.
 ///
 /// `key.left`, `key.right`, `key.up`, `key.down` (1 held, 0 let go); `pointer.x`, `pointer.y` and `pad.x`, `pad.y` from
-/// -1 (left, away from the player) to 1 (right, towards the player); `key.restart`, `key.next` and `key.attract` act
-/// when pressed. The device itself counts where it is tracked.
+/// -1 (left, away from the player) to 1 (right, towards the player); `pointer.held` while a button or finger is down;
+/// `key.restart`, `key.next` and `key.attract` act when pressed. The device itself counts where it is tracked.
 class Visitor {
 public:
     static constexpr double kSilence = 45.0;  ///< seconds without anything done until he is taken to have gone
@@ -35,6 +35,8 @@ public:
     /// By keys, pointer, stick or device together, radians, at most `kMostLean` long. Positive x: the right side down;
     /// positive y: the side towards him down.
     [[nodiscard]] glm::dvec2 lean() const noexcept;
+    /// The same where a pointer that lies still asks for nothing: it counts while it is moved or held, and a moment on.
+    [[nodiscard]] glm::dvec2 lively() const noexcept;
     /// Keys and stick alone, at most 1 each way.
     [[nodiscard]] glm::dvec2 push() const noexcept;
     /// Where the pointer stands over the view, -1 to 1 from its middle; nothing while it is elsewhere.
@@ -48,8 +50,9 @@ private:
     glm::dvec2 negative_{0.0}, positive_{0.0}; ///< keys
     std::optional<glm::dvec2> pointer_;
     glm::dvec2 pad_{0.0};
-    glm::dvec2 device_{0.0}; ///< lean of the tracked device, radians; 0 without one
-    double silence_ = 0.0;
+    glm::dvec2 device_{0.0};                    ///< lean of the tracked device, radians; 0 without one
+    double silence_ = 0.0, pointerRests_ = 0.0; ///< seconds
+    bool holds_ = false;                        ///< a button or a finger
     bool there_ = false, came_ = false, left_ = false;
     bool active_ = false, restart_ = false, next_ = false, attract_ = false;
 };

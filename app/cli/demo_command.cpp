@@ -17,6 +17,7 @@
 #include "app/cli/new_demo.h"
 #include "app/cli/session.h"
 #include "app/output/demo_player.h"
+#include "app/output/video_writer.h"
 #include "app/weather/weather_fetch.h"
 #include "core/base/error.h"
 
@@ -28,6 +29,7 @@ struct DemoOptions {
     std::string name;
     DemoPlay play;
     std::string record, picture, inputs, kept, language;
+    std::vector<int> size;
 };
 
 /// Replaces this process by `lumorph-studio`, which lies beside it: only it has a window.
@@ -93,6 +95,12 @@ void addDemoCommand(CLI::App& app, const Session& session) {
         command->add_option("--record", options->record, "Without a window: a video of the lit device, OUT.mp4");
     CLI::Option* picture =
         command->add_option("--picture", options->picture, "Without a window: the last picture of that, OUT.png");
+    CLI::Option* size =
+        command->add_option("--size", options->size, "Without a window: pixels of video and picture (default: 960x600)")
+            ->delimiter('x')
+            ->expected(2)
+            ->type_name("WIDTHxHEIGHT")
+            ->check(CLI::Range(160, 3840));
     CLI::Option* inputs =
         command->add_option("--input", options->inputs,
                             "Without a window: what visitors do, as JSON: seconds, name and value of each input");
@@ -111,7 +119,7 @@ void addDemoCommand(CLI::App& app, const Session& session) {
             "--" + told.name, [options, name = told.name](const std::string& text) { options->play.told[name] = text; },
             told.help);
     CLI::App* own = addNew(*command);
-    command->callback([options, seconds, record, picture, inputs, keep, seed, own, &session] {
+    command->callback([options, seconds, record, picture, size, inputs, keep, seed, own, &session] {
         if (own->parsed()) return;
         if (options->name.empty())
             throw InvalidInput("demo", "which one is not said",
@@ -122,7 +130,8 @@ void addDemoCommand(CLI::App& app, const Session& session) {
         options->play.inputs = options->inputs;
         options->play.kept = options->kept;
         options->play.language = options->language == "de" ? Language::german : Language::english;
-        if (*seconds || *record || *picture || *inputs || *keep || *seed || options->play.json) {
+        if (*size) options->play.size = evenSize({options->size[0], options->size[1]});
+        if (*seconds || *record || *picture || *size || *inputs || *keep || *seed || options->play.json) {
             fetchForecast(options->play.told);
             std::ostringstream rates; // printed once the bar has gone
             playDemo(demo, options->play, rates, session.progress());

@@ -32,7 +32,8 @@ constexpr int kStepsAPicture = 2; ///< 30 pictures a second
 constexpr double kMaxSeconds = 600.0;
 constexpr double kWalk = 0.35; ///< radians to either side
 constexpr double kWalkPeriod = 8.0;
-constexpr double kStoop = 0.34; ///< radians by which he goes down to see what the bend is for
+constexpr double kBareLower = 0.3; ///< radians by which the bare device is seen from lower
+constexpr double kStoop = 0.34;    ///< radians by which he goes down to see what the bend is for
 
 double since(Clock::time_point begun) {
     return std::chrono::duration<double, std::milli>(Clock::now() - begun).count();
@@ -43,14 +44,6 @@ glm::vec3 walkedEye(const glm::vec3& eye, double seconds) {
     const double turn = kWalk * std::sin(2.0 * std::numbers::pi * seconds / kWalkPeriod);
     const double c = std::cos(turn), s = std::sin(turn);
     return glm::vec3(glm::dvec3(c * eye.x + s * eye.z, eye.y, c * eye.z - s * eye.x));
-}
-
-/// The eye as far away, but lower.
-glm::vec3 stoopedEye(const glm::vec3& eye) {
-    const double out = std::hypot(double(eye.x), double(eye.z)), far = std::hypot(out, double(eye.y));
-    const double up = std::max(std::atan2(double(eye.y), out) - kStoop, 0.2);
-    const double nearer = out > 0.0 ? far * std::cos(up) / out : 0.0;
-    return glm::vec3(glm::dvec3(nearer * eye.x, far * std::sin(up), nearer * eye.z));
 }
 
 /// The same view in half as large pixels.
@@ -92,7 +85,7 @@ public:
         const double seconds = player_.frame() ? player_.seconds() + ShowPlayer::kStep : 0.0;
         Installation room = room_;
         const bool compares = player_.frame() && player_.frame()->comparesBend;
-        room.eye = walkedEye(compares ? stoopedEye(room_.eye) : room_.eye, seconds);
+        room.eye = walkedEye(compares ? loweredEye(room_.eye, kStoop) : room_.eye, seconds);
         MatchWish wish = player_.wish();
         wish.installation = std::make_shared<const Installation>(std::move(room));
         player_.setWish(std::move(wish));
@@ -126,7 +119,8 @@ public:
             const std::string number = i == 0 ? "" : std::to_string(i + 1);
             writePng(renderer_.readProjector(i), folder / (name_ + "-projector" + number + ".png"));
         }
-        writePng(halved(renderer_.readLab(finer(viewOf(frame, show_.picture)))), folder / (name_ + "-lab.png"));
+        writePng(halved(renderer_.readLab(finer(viewOf(frame, show_.picture)), kDimRoom)),
+                 folder / (name_ + "-lab.png"));
         renderer_.setEyeSize(show_.video);
     }
 
@@ -146,10 +140,12 @@ public:
 private:
     /// As it is drawn live, by which it is measured; what is kept has smooth edges, beside that time.
     Image labFrom(const CalibratedCamera& camera, bool kept) {
-        Image live = renderer_.readLab(camera);
+        Image live = renderer_.readLab(camera, kDimRoom);
         if (!kept) return live;
         const auto begun = Clock::now();
-        Image smooth = halved(renderer_.readLab(finer(camera)));
+        Image smooth = halved(renderer_.readLab(finer(camera), kDimRoom));
+        if (const ShowFrame& frame = player_.shown(); !player_.frame()->comparesBend)
+            putInlay(smooth, halved(renderer_.readBare(finer(bareView(frame, inlaySize(smooth.size()))))));
         beside_ += since(begun);
         return smooth;
     }
@@ -175,6 +171,9 @@ private:
     void giveInputs(double seconds) {
         for (; given_ < inputs_.size() && inputs_[given_].seconds <= seconds; ++given_)
             player_.wish().inputs->push(inputs_[given_].input);
+    }
+    static CalibratedCamera bareView(const ShowFrame& frame, glm::ivec2 size) {
+        return deviceView(frame, loweredEye(frame.eye.value_or(frame.installation->eye), kBareLower), size);
     }
     static CalibratedCamera viewOf(const ShowFrame& frame, glm::ivec2 size) {
         return deviceView(frame, frame.eye.value_or(frame.installation->eye), size);
@@ -253,6 +252,7 @@ void playDemo(const Demo& demo, const DemoPlay& play, std::ostream& out, const P
     ShowPictures show;
     show.seconds = play.seconds;
     show.last = play.last;
+    show.video = play.size;
     std::vector<std::string> warnings;
     const ShowScript script = scriptOf(demo, play, warnings);
     ShowRates rates =

@@ -55,6 +55,7 @@ ShowRates playShow(const ProjectContents& contents, const std::string& name, con
 /// How a demonstration is played without a window.
 struct DemoPlay {
     double seconds = 6.0;
+    glm::ivec2 size{960, 600};    ///< pixels, both even
     std::filesystem::path video;  ///< .mp4; empty: none
     std::filesystem::path last;   ///< its last picture, .png; empty: none
     std::filesystem::path inputs; ///< as `readInputScript` reads them; empty: none

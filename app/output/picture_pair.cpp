@@ -67,4 +67,20 @@ Image besideEachOther(const Image& left, const Image& right, const std::array<Wo
     return whole;
 }
 
+glm::ivec2 inlaySize(glm::ivec2 picture) {
+    const int wide = std::max(16, static_cast<int>(std::lround(0.26 * picture.x)));
+    return {wide, wide * 5 / 8};
+}
+
+void putInlay(Image& picture, const Image& inlay) {
+    const int margin = std::max(1, picture.size().x / 60), line = std::max(1, picture.size().x / 640);
+    const glm::ivec2 size = inlay.size(), low(picture.size().x - size.x - margin, margin);
+    if (low.x < 0 || low.y + size.y > picture.size().y) return;
+    for (int y = 0; y < size.y; ++y)
+        for (int x = 0; x < size.x; ++x) {
+            const bool rim = std::min({x, y, size.x - 1 - x, size.y - 1 - y}) < line;
+            picture.at(low.x + x, low.y + y) = rim ? Image::Pixel{150, 152, 156, 255} : inlay.at(x, y);
+        }
+}
+
 } // namespace lumorph

@@ -12,4 +12,9 @@ namespace lumorph {
 [[nodiscard]] Image besideEachOther(const Image& left, const Image& right, const std::array<Words, 2>& captions,
                                     Language language);
 
+/// Pixels of a picture within another.
+[[nodiscard]] glm::ivec2 inlaySize(glm::ivec2 picture);
+/// Puts it into the upper right corner, with a thin line around it.
+void putInlay(Image& picture, const Image& inlay);
+
 } // namespace lumorph

@@ -265,11 +265,18 @@ unsigned SpatialRenderer::projectorTexture(std::size_t projector) const {
     return projector < targets.size() && targets[projector] ? targets[projector]->sent.texture() : 0;
 }
 
-void SpatialRenderer::drawLab(unsigned framebuffer, const CalibratedCamera& observer, float ambient) {
+void SpatialRenderer::drawLab(unsigned framebuffer, const CalibratedCamera& observer, float roomLight) {
     if (!data_->frame) throw InvalidInput("lab", "no frame has been drawn yet", "draw one first");
     checkCamera(observer);
     const StateKeeper keeper;
-    data_->lab.draw(framebuffer, observer, ambient, *data_->frame, data_->device, data_->lit(), data_->out);
+    data_->lab.draw(framebuffer, observer, roomLight, *data_->frame, data_->device, data_->lit(), data_->out);
+}
+
+void SpatialRenderer::drawBare(unsigned framebuffer, const CalibratedCamera& observer) {
+    if (!data_->frame) throw InvalidInput("device", "no frame has been drawn yet", "draw one first");
+    checkCamera(observer);
+    const StateKeeper keeper;
+    data_->lab.draw(framebuffer, observer, kWorkRoom, *data_->frame, data_->device, {}, data_->out);
 }
 
 Image SpatialRenderer::readEye() {
@@ -284,9 +291,15 @@ Image SpatialRenderer::readProjector(std::size_t projector) const {
     return data_->projectors[projector]->sent.read();
 }
 
-Image SpatialRenderer::readLab(const CalibratedCamera& observer, float ambient) {
+Image SpatialRenderer::readLab(const CalibratedCamera& observer, float roomLight) {
     const ColorTarget target(observer.size);
-    drawLab(target.framebuffer(), observer, ambient);
+    drawLab(target.framebuffer(), observer, roomLight);
+    return target.read();
+}
+
+Image SpatialRenderer::readBare(const CalibratedCamera& observer) {
+    const ColorTarget target(observer.size);
+    drawBare(target.framebuffer(), observer);
     return target.read();
 }
 

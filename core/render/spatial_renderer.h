@@ -19,6 +19,9 @@ struct SpatialTimes {
     double mixed = 0.0; ///< within `projectors`: of pixels that lie on several surfaces
 };
 
+/// Light of a room, as radiance of white that faces up: dim enough for projectors, and to work in.
+constexpr float kDimRoom = 0.035F, kWorkRoom = 0.6F;
+
 /// The two passes of spatial augmented reality (R26-R35) in the current OpenGL 4.1 context: what the eye should see,
 /// and what each projector sends out so that it does. Everything it holds dies with it, the same context being current.
 class SpatialRenderer {
@@ -45,13 +48,17 @@ public:
     [[nodiscard]] unsigned projectorTexture(std::size_t projector) const;
 
     /// Draws what an observer sees of the lit device and table into a framebuffer of the observer's size: the live form
-    /// of the virtual lab. It is sRGB encoded by the framebuffer or, if that does not encode, by this. `ambient` is
-    /// light of the room that no projector makes, linear.
-    void drawLab(unsigned framebuffer, const CalibratedCamera& observer, float ambient = 0.0F);
+    /// of the virtual lab. It is sRGB encoded by the framebuffer or, if that does not encode, by this. With light
+    /// of the room, floor and walls are seen too; without, what no projector reaches is black, as physics says.
+    void drawLab(unsigned framebuffer, const CalibratedCamera& observer, float roomLight = 0.0F);
+
+    /// The same without the projectors' light, in a room that is lit to work in: the shape that a hand would feel.
+    void drawBare(unsigned framebuffer, const CalibratedCamera& observer);
 
     [[nodiscard]] Image readEye();
     [[nodiscard]] Image readProjector(std::size_t projector) const;
-    [[nodiscard]] Image readLab(const CalibratedCamera& observer, float ambient = 0.0F);
+    [[nodiscard]] Image readLab(const CalibratedCamera& observer, float roomLight = 0.0F);
+    [[nodiscard]] Image readBare(const CalibratedCamera& observer);
     /// White where the surface that the eye pass's camera sees is seen by an enabled projector too. Throws DataError
     /// where the driver refuses its program.
     [[nodiscard]] Image readMask();

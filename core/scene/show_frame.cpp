@@ -43,6 +43,15 @@ std::optional<std::array<glm::vec3, 8>> seenCorners(const PosedSurface& surface)
     return finite ? std::optional(corners) : std::nullopt;
 }
 
+glm::vec3 loweredEye(const glm::vec3& eye, double by) {
+    constexpr double kLowest = 0.2; // radians over the table
+    if (by == 0.0) return eye;
+    const double out = std::hypot(double(eye.x), double(eye.z)), far = std::hypot(out, double(eye.y));
+    const double up = std::max(std::atan2(double(eye.y), out) - by, kLowest);
+    const double nearer = out > 0.0 ? far * std::cos(up) / out : 0.0;
+    return glm::vec3(glm::dvec3(nearer * eye.x, far * std::sin(up), nearer * eye.z));
+}
+
 CalibratedCamera deviceView(const ShowFrame& frame, const glm::vec3& eye, glm::ivec2 size) {
     Box box = frame.rig->reach();
     box.max.y = heightAbove(frame, box);

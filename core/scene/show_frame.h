@@ -32,6 +32,8 @@ struct ShowFrame {
 /// follow, or its numbers are not finite.
 [[nodiscard]] std::optional<std::array<glm::vec3, 8>> seenCorners(const PosedSurface& surface);
 
+/// An eye as far from the world's middle, but lower by so many radians: from there one sees what bends.
+[[nodiscard]] glm::vec3 loweredEye(const glm::vec3& eye, double by);
 /// The off-axis camera of the eye pass: from `eye`, tight around the device as it is and everything above it up to its
 /// reach, so that it does not swim while the device moves.
 [[nodiscard]] CalibratedCamera deviceView(const ShowFrame& frame, const glm::vec3& eye, glm::ivec2 size);

@@ -165,6 +165,54 @@ TEST_F(ApplicationsWindow, StartByOneClickOnACardAndExplainThemselves) {
     EXPECT_TRUE(eventually([&] { return studio().loop.program() == nullptr; })) << "the host takes over";
 }
 
+/// Share of the pixels in which two pictures differ visibly.
+double differing(const QImage& a, const QImage& b) {
+    if (a.size() != b.size()) return 1.0;
+    int count = 0;
+    for (int y = 0; y < a.height(); ++y)
+        for (int x = 0; x < a.width(); ++x) count += std::abs(qGray(a.pixel(x, y)) - qGray(b.pixel(x, y))) > 24 ? 1 : 0;
+    return static_cast<double>(count) / (a.width() * a.height());
+}
+
+TEST_F(ApplicationsWindow, AKeyTakesTheLightAwayAndTheBareDeviceIsSeenBesideIt) {
+    studio().settings.setBareInlay({});
+    window.command("Applications");
+    window.click("applications.labyrinth");
+    ASSERT_TRUE(eventually([&] { return shows("labyrinth"); }, 30s));
+    auto* inlay = window.find<ViewPane>("scene.inlay");
+    ASSERT_NE(inlay, nullptr);
+    EXPECT_TRUE(eventually([&] { return !inlay->picture().isNull(); }, 30s));
+    EXPECT_NEAR(inlay->width(), 0.26 * eye().width(), 2.0);
+    EXPECT_GT(inlay->x(), eye().width() / 2);
+    picture("labyrinth-inlay");
+    const QImage felt = inlay->grab().toImage();
+    QTest::keyClick(&eye(), Qt::Key_N);
+    QTest::keyClick(&eye(), Qt::Key_N);
+    EXPECT_TRUE(eventually([&] { return differing(felt, inlay->grab().toImage()) > 0.01; }, 20s))
+        << "one sees that it takes the third level's shape";
+
+    const QImage lit = eye().grab().toImage();
+    QTest::keyClick(&eye(), Qt::Key_L);
+    ASSERT_TRUE(eventually([&] { return eye().light() == 0.0; }, 10s));
+    EXPECT_TRUE(eventually([&] { return differing(lit, eye().grab().toImage()) > 0.2; }, 20s));
+    picture("labyrinth-bare");
+    QTest::keyClick(&eye(), Qt::Key_L);
+    ASSERT_TRUE(eventually([&] { return eye().light() == 1.0; }, 10s));
+
+    QTest::keyClick(&eye(), Qt::Key_B);
+    EXPECT_FALSE(inlay->isVisible());
+    QTest::keyClick(&eye(), Qt::Key_B);
+    EXPECT_TRUE(inlay->isVisible());
+    studio().settings.setBareInlay({studio::BareInlay::Corner::bottomLeft, 0.35});
+    EXPECT_NEAR(inlay->width(), 0.35 * eye().width(), 2.0);
+    EXPECT_GT(inlay->y(), eye().height() / 2);
+    studio().settings.setBareInlay({studio::BareInlay::Corner::none, 0.35});
+    EXPECT_FALSE(inlay->isVisible());
+    studio().settings.setBareInlay({});
+    window.click("bar.leaveKiosk");
+    EXPECT_TRUE(eventually([&] { return !inlay->isVisible(); })) << "it is the visitors'";
+}
+
 TEST_F(ApplicationsWindow, EscEscStopsWhereItAlsoLeadsToTheCards) {
     window.command("Applications");
     window.click("applications.labyrinth");

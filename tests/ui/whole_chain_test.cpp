@@ -226,7 +226,7 @@ protected:
         table->rig = window.state().rig.rig;
         table->truth = withLabCamera(trueRoom(labTruth(assumedRoom()), table->rig->actuators(), kSeed));
         CalibratedCamera& eyes = table->truth.cameras.front().camera;
-        eyes = withSize(eyes, {640, 512}); // its pictures are worked out in a few hundredths of a second
+        eyes = withSize(eyes, {480, 384}); // servos alone are looked at some two thousand times
         table->board =
             std::make_unique<BoardLab>(table->truth, parseCalibrationBoard(kBoard), BoardLabOptions{}, kSeed);
         LightLabOptions options;

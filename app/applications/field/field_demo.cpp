@@ -27,7 +27,8 @@ Demo fieldDemo() {
                          "Ein Tablet folgt einer Blüte, die sich öffnet, so gut es kann; Farbe zeigt, was fehlt."},
             .thumbnail = "thumbnails/field.png",
             .workspace = "field",
-            .open = openField};
+            .open = openField,
+            .forVisitors = false};
 }
 
 } // namespace lumorph

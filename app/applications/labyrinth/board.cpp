@@ -17,7 +17,6 @@ namespace {
 constexpr const char* kMazeModel = "labyrinth level"; ///< an asset that is in memory alone
 constexpr float kGem = 0.0050F;                       ///< side of a pick-up, metres
 constexpr double kGemFloats = 0.0042;                 ///< its middle over the floor, metres
-constexpr double kTimeWidth = 0.0016;                 ///< of the bar of time, metres
 constexpr double kBeamHeight = 0.016;                 ///< of the light over the goal, metres
 constexpr double kRingSpeed = 0.045;                  ///< by which its side grows, metres a second
 constexpr double kRingSeconds = 1.4;                  ///< until it has faded
@@ -131,15 +130,6 @@ SceneItem gem(const Level& level, glm::ivec2 cell, int id, int number) {
     return item;
 }
 
-SceneItem timeBar(const Level& level) {
-    SceneItem item = demoItem(kTimeItem, "Time left", ShapeItem{ShapeItem::Form::box, glm::vec3(1.0F)});
-    const double top = wallTop(level, {level.columns / 2, level.rows - 1});
-    item.position = {
-        glm::dvec3(0.0, static_cast<double>(kSheet) + top, 0.5 * level.cell * level.rows - 0.5 * level.cell)};
-    item.material = glowing("Time", {1.0F, 0.78F, 0.25F}, 0.3F);
-    return item;
-}
-
 /// A picked-up gem lies on the far wall, from the left.
 glm::vec3 trophyPlace(const Level& level, std::size_t number) {
     const double pitch = level.cell;
@@ -198,13 +188,6 @@ void showGoal(Scene& scene, const Game& game, double inGoal) {
     ring.opacity = static_cast<float>(0.45 * (1.0 - inGoal / kRingSeconds));
 }
 
-void showTime(SceneItem& item, const Game& game) {
-    const Level& level = game.level();
-    const double left = std::clamp(1.0 - game.seconds() / level.seconds, 0.0, 1.0);
-    item.visible = left > 0.0;
-    item.scale = {glm::dvec3(std::max(1e-3, left * (level.columns - 2) * level.cell), 0.0008, kTimeWidth)};
-}
-
 } // namespace
 
 std::shared_ptr<const SceneAssets> boardPictures(const std::vector<Level>& levels) {
@@ -230,7 +213,6 @@ Board::Board(const Game& game, const SceneAssets& pictures) : still_(defaultScen
     still_.items.push_back(ball());
     still_.items.push_back(ghostBall());
     still_.items.push_back(goalDisc(level));
-    still_.items.push_back(timeBar(level));
     still_.items.push_back(goalBeam(level));
     still_.items.push_back(goalRing(level));
     for (int k = 0; k < kTrail; ++k) still_.items.push_back(trailLight(k));
@@ -257,7 +239,6 @@ std::shared_ptr<const Scene> Board::show(const Game& game, const Ghost* best, do
     }
     showTrail(*scene, game);
     showGoal(*scene, game, inGoal);
-    showTime(itemOf(*scene, kTimeItem), game);
     showPickUps(*scene, game, pickUps_);
     return scene;
 }

@@ -18,7 +18,6 @@ enum BoardItem : int {
     kBallItem,
     kGhostItem,
     kGoalItem,
-    kTimeItem,
     kBeamItem,   ///< the light over the goal
     kRingItem,   ///< the light that runs out from the goal when the ball is in it
     kFirstTrail, ///< where the ball has been, the newest first

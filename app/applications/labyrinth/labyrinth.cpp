@@ -26,11 +26,14 @@ const char* soundOf(GameEvent::Kind kind) {
     }
 }
 
-std::shared_ptr<const ShowCaption> captionOf(const Level& level, std::size_t number) {
+/// Name and idea of the level, and how the run stands: another one each second.
+std::shared_ptr<const ShowCaption> captionOf(const Level& level, std::size_t number, int seconds, int points) {
     const std::string count = std::to_string(number) + "  ";
+    const std::string stands = "\n" + std::to_string(seconds) + " s, " + std::to_string(points);
+    const std::string& german = level.ideaGerman.empty() ? level.idea : level.ideaGerman;
     return std::make_shared<const ShowCaption>(
         ShowCaption{{count + level.name, count + (level.nameGerman.empty() ? level.name : level.nameGerman)},
-                    {level.idea, level.ideaGerman}});
+                    {level.idea + stands + " points", german + stands + " Punkte"}});
 }
 
 } // namespace
@@ -49,7 +52,7 @@ void LabyrinthProgram::begin(std::size_t level) {
     pilot_.emplace(levels_[level], true);
     board_.emplace(*game_, *pictures_);
     relief_.emplace(levels_[level], game_->blocks());
-    caption_ = captionOf(levels_[level], level + 1);
+    caption_ = nullptr;
 }
 
 ShowContent LabyrinthProgram::frame(const ShowMoment& moment) {
@@ -64,6 +67,9 @@ ShowContent LabyrinthProgram::frame(const ShowMoment& moment) {
     const glm::dvec3& ball = game_->ball().position;
     content.target = game_->fallen() ? relief_->level() : relief_->withBall({ball.x, ball.z});
     content.following = Following::split;
+    const std::pair stands(static_cast<int>(game_->seconds()), game_->score());
+    if (!caption_ || stands != std::exchange(stands_, stands))
+        caption_ = captionOf(levels_[number_], number_ + 1, stands.first, stands.second);
     content.caption = caption_;
     return content;
 }

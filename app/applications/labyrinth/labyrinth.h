@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "app/applications/demo.h"
@@ -42,7 +43,8 @@ private:
     std::vector<Level> levels_;
     std::vector<Ghost> best_;
     std::shared_ptr<const SceneAssets> pictures_;
-    std::shared_ptr<const ShowCaption> caption_; ///< the level's name and idea
+    std::shared_ptr<const ShowCaption> caption_;
+    std::pair<int, int> stands_; ///< seconds and points that it tells
     Visitor visitor_;
     std::size_t number_ = 0;
     double rests_ = 0.0; ///< seconds in the goal

@@ -39,7 +39,7 @@ struct Level {
     std::string nameGerman, ideaGerman; ///< the same in German; empty: there is none
     double cell = 0.010;                ///< side of a cell, metres
     double step = 0.0015;               ///< one unit of height, metres
-    double wall = 0.006;                ///< of walls over the highest floor beside them, metres
+    double wall = 0.005;                ///< of walls over the highest floor beside them, metres
     double seconds = 60.0;              ///< who is faster scores
     std::string floorMaterial = "Wood"; ///< names of ready materials
     std::string wallMaterial = "Brick";
@@ -57,7 +57,7 @@ struct Level {
 inline constexpr int kMinCells = 5; ///< a side
 inline constexpr int kMaxCells = 48;
 inline constexpr int kMaxHeight = 9;             ///< steps
-inline constexpr double kBallRadius = 0.003;     ///< metres
+inline constexpr double kBallRadius = 0.0035;    ///< metres
 inline constexpr double kDeckThickness = 0.0012; ///< of bridges, metres
 
 /// Middle of a cell, x and z in device metres; and the cell at a place, which may lie outside.

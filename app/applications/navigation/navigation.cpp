@@ -26,6 +26,8 @@ constexpr const char* kLandModel = "navigation land"; ///< assets that are in me
 constexpr const char* kRainModel = "navigation rain";
 constexpr double kPanSpeed = 0.075;    ///< device metres a second at full lean
 constexpr double kZoomSpeed = 0.9;     ///< by which the width's logarithm changes, a second
+constexpr double kWheel = 0.16;        ///< the same a notch of the wheel
+constexpr double kIdle = 12.0;         ///< seconds until it goes back to the last place
 constexpr double kTurnSpeed = 0.7;     ///< radians a second
 constexpr double kDrift = 0.045;       ///< radians a second in which it turns while nobody is there
 constexpr double kSmooth = 0.18;       ///< seconds in which panning follows the hand
@@ -183,6 +185,7 @@ void NavigationProgram::listen(const ShowMoment& moment) {
         const double held = input.value > 0.5 ? 1.0 : 0.0;
         if (input.name == "key.in") in_ = held;
         if (input.name == "key.out") out_ = held;
+        if (input.name == "wheel" && std::isfinite(input.value)) wheel_ += std::clamp(input.value, -8.0, 8.0);
         if (input.name == "key.turnLeft") left_ = held;
         if (input.name == "key.turnRight") right_ = held;
         if (input.name == "key.rain") raining_ = held > 0.0;
@@ -195,9 +198,12 @@ void NavigationProgram::listen(const ShowMoment& moment) {
 
 void NavigationProgram::move(double step) {
     if (visitor_.came()) flight_.reset();
+    if (visitor_.came() || visitor_.restart()) last_.reset();
     if (visitor_.restart()) fly(home());
-    if (visitor_.next() && !map_->places.empty())
-        fly(viewOf(map_->places[visited_++ % map_->places.size()], view_.turn));
+    if (visitor_.next() && !map_->places.empty()) {
+        last_ = visited_++ % map_->places.size();
+        fly(viewOf(map_->places[*last_], view_.turn));
+    }
     if (visitor_.there())
         steer(step);
     else
@@ -222,14 +228,17 @@ void NavigationProgram::tour(double step) {
 }
 
 void NavigationProgram::steer(double step) {
-    const glm::dvec2 lean = visitor_.lean() / Visitor::kMostLean;
-    const bool asks = glm::length(lean) > 0.1;
-    if (asks || in_ + out_ + left_ + right_ > 0.0) flight_.reset();
+    const glm::dvec2 lean = visitor_.lively() / Visitor::kMostLean;
+    const bool asks = glm::length(lean) > 0.1, moves = asks || wheel_ != 0.0 || in_ + out_ + left_ + right_ > 0.0;
+    if (moves) flight_.reset();
+    idle_ = moves ? 0.0 : idle_ + step;
+    if (idle_ > kIdle && idle_ - step <= kIdle && !flight_)
+        fly(last_ ? viewOf(map_->places[*last_], view_.turn) : home());
     if (flight_) return;
     const glm::dvec2 wanted = asks ? kPanSpeed * lean : glm::dvec2(0.0);
     velocity_ = glm::mix(wanted, velocity_, std::exp(-step / kSmooth));
     if (glm::length(velocity_) < 1e-4) velocity_ = {};
-    view_.width *= std::exp(kZoomSpeed * step * (out_ - in_));
+    view_.width *= std::exp(kZoomSpeed * step * (out_ - in_) - kWheel * std::exchange(wheel_, 0.0));
     view_.turn += kTurnSpeed * step * (right_ - left_);
     view_.centre = view_.placeAt(velocity_ * step);
     view_ = within(view_, map_->heights.size(), kNarrowest);

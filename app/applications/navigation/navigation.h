@@ -79,7 +79,10 @@ private:
     std::optional<Flight> flight_;
     double flown_ = 0.0, rested_ = 0.0; ///< seconds
     std::size_t visited_ = 0;           ///< places, by the tour or `key.next`
+    std::optional<std::size_t> last_;   ///< place that a visitor went to
+    double idle_ = 0.0;                 ///< seconds in which he has steered nothing
     double in_ = 0.0, out_ = 0.0, left_ = 0.0, right_ = 0.0;
+    double wheel_ = 0.0; ///< notches
     bool raining_ = false;
     Bending usual_, bending_;         ///< where nobody chose otherwise, and now
     std::optional<glm::dvec2> cloud_; ///< over the device

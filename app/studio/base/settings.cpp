@@ -13,6 +13,7 @@ namespace {
 constexpr int kMostRecentFiles = 10;
 constexpr double kLowestRate = 10.0, kHighestRate = 120.0, kUsualRate = 60.0;
 constexpr double kUsualLoudness = 0.7;
+constexpr double kLeastBareShare = 0.15, kMostBareShare = 0.4;
 
 constexpr double kUsualNextMinutes = 2.0, kMostNextMinutes = 120.0; // in the kiosk
 
@@ -83,6 +84,24 @@ void Settings::setLoudness(double share) {
     if (tenths == loudness()) return;
     setValue("sound/loudness", tenths);
     emit soundChanged();
+}
+
+BareInlay Settings::bareInlay() const {
+    BareInlay inlay;
+    bool isNumber = false;
+    const int corner = value("visitors/bareCorner").toInt(&isNumber);
+    if (isNumber && corner >= 0 && corner <= static_cast<int>(BareInlay::Corner::bottomLeft))
+        inlay.corner = static_cast<BareInlay::Corner>(corner);
+    const double share = value("visitors/bareShare").toDouble(&isNumber);
+    if (isNumber) inlay.share = std::clamp(share, kLeastBareShare, kMostBareShare);
+    return inlay;
+}
+
+void Settings::setBareInlay(const BareInlay& inlay) {
+    if (inlay == bareInlay()) return;
+    setValue("visitors/bareCorner", static_cast<int>(inlay.corner));
+    setValue("visitors/bareShare", std::clamp(inlay.share, kLeastBareShare, kMostBareShare));
+    emit bareInlayChanged();
 }
 
 bool Settings::tourSeen() const { return value("tour/seen", false).toBool(); }

@@ -16,6 +16,14 @@
 
 namespace lumorph::studio {
 
+/// Where visitors see the bare device beside the picture; the lower right corner is the buttons'.
+struct BareInlay {
+    enum class Corner { none, topLeft, topRight, bottomLeft };
+    Corner corner = Corner::topRight;
+    double share = 0.26; ///< of the view's width
+    bool operator==(const BareInlay&) const = default;
+};
+
 /// What the user chose once for all projects; kept in the user's configuration. Lives in the window's thread.
 class Settings : public QObject {
     Q_OBJECT
@@ -34,6 +42,8 @@ public:
     void setSound(bool on);
     [[nodiscard]] double loudness() const; ///< 0 to 1, in steps of a tenth
     void setLoudness(double share);
+    [[nodiscard]] BareInlay bareInlay() const;
+    void setBareInlay(const BareInlay& inlay);
     [[nodiscard]] bool tourSeen() const;
     void setTourSeen(bool seen);
     /// That of visitors; as long as none was chosen, the system's where it is one of them, else English.
@@ -70,6 +80,7 @@ signals:
     void placesNewTargetsChanged();
     void languageChanged();
     void soundChanged();
+    void bareInlayChanged();
     void recentFilesChanged();
     void readOnlyChanged();
 

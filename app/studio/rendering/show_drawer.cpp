@@ -25,9 +25,6 @@ using Bend = ShowView::Bend;
 constexpr double kExactEyePixels = 1280.0 * 800.0;
 constexpr glm::ivec2 kUsualEye{1280, 800};
 
-// Of the lab's room, linear: what no projector reaches is dim, not gone.
-constexpr float kRoomLight = 0.03F;
-
 double since(Clock::time_point begun) {
     return std::chrono::duration<double, std::milli>(Clock::now() - begun).count();
 }
@@ -49,7 +46,7 @@ glm::ivec2 eyeSize(const ShowPace::Work& work) {
     for (const bool eyes : {true, false})
         for (const WantedView& wanted : work.request.views) {
             if (wanted.view.exact) enough = std::max(enough, kExactEyePixels);
-            if (wanted.view.kind == ShowView::Kind::projector || showsEye(wanted) != eyes) continue;
+            if (wanted.view.kind == ShowView::Kind::projector || !wanted.view.lit || showsEye(wanted) != eyes) continue;
             const glm::ivec2 pixels = toVec(wanted.pixels);
             if (eyes || size == glm::ivec2(0)) size = glm::max(size, pixels);
             if (work.resolution >= 1.0) enough = std::max(enough, static_cast<double>(pixels.x) * pixels.y);
@@ -66,7 +63,7 @@ ShowFrame withProjectorPixels(ShowFrame frame, const ShowPace::Work& work) {
     };
     if (any([](const WantedView& wanted) { return wanted.view.exact; })) return frame;
     // In the lab the device fills the view, but only a part of what the projector covers.
-    if (any([](const WantedView& wanted) { return wanted.view.kind == ShowView::Kind::lab; }))
+    if (any([](const WantedView& wanted) { return wanted.view.kind == ShowView::Kind::lab && wanted.view.lit; }))
         return withProjectorShare(std::move(frame), work.resolution);
     glm::ivec2 room(0);
     for (const WantedView& wanted : work.request.views) room = glm::max(room, toVec(wanted.pixels));
@@ -74,8 +71,7 @@ ShowFrame withProjectorPixels(ShowFrame frame, const ShowPace::Work& work) {
 }
 
 bool needsProjectors(const ShowRequest& request) {
-    return std::any_of(request.views.begin(), request.views.end(),
-                       [](const WantedView& wanted) { return wanted.view.kind != ShowView::Kind::eye; });
+    return std::ranges::any_of(request.views, [](const WantedView& wanted) { return wanted.view.needsProjectors(); });
 }
 
 /// What holds OpenGL objects.
@@ -165,7 +161,13 @@ void ShowDrawer::Data::drawView(const WantedView& wanted, const ShowFrame& frame
     auto from = Clock::now();
     if (wanted.view.kind == ShowView::Kind::lab) {
         const glm::ivec2 size = scaled(toVec(wanted.pixels), resolution);
-        renderer.drawLab(reader.framebuffer(toSize(size)), labCamera(framed, wanted.view.observer, size), kRoomLight);
+        const glm::vec3 eye = loweredEye(wanted.view.observer.value_or(viewerOf(framed)), wanted.view.lower);
+        const CalibratedCamera camera = labCamera(framed, eye, size);
+        const unsigned target = reader.framebuffer(toSize(size));
+        if (wanted.view.lit)
+            renderer.drawLab(target, camera, kDimRoom);
+        else
+            renderer.drawBare(target, camera);
         drawn.ms.lab += since(from);
         from = Clock::now();
         reader.start(wanted.pixels);

@@ -30,8 +30,11 @@ struct ShowView {
     std::size_t projector = 0;
     std::optional<glm::vec3> observer; ///< of the lab, world metres; none: the viewer's own eye
     Bend bend = Bend::asItIs;
+    bool lit = true;    ///< of the lab: in the projectors' light, else the bare device in a lit room
+    double lower = 0.0; ///< of the lab: radians by which the eye is lower
     bool exact = false; ///< of a projector: all its pixels, none of them scaled
     bool operator==(const ShowView&) const = default;
+    [[nodiscard]] bool needsProjectors() const { return kind == Kind::projector || (kind == Kind::lab && lit); }
 };
 
 /// A view and the room there is for it, pixels of the screen. A projector's picture keeps its shape within that room,

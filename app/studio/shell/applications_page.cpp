@@ -34,6 +34,10 @@ constexpr int kTextHeight = 104;
 constexpr double kPictureShape = 200.0 / 320.0;
 
 const Words kHeading{"What would you like to see?", "Was möchtest du sehen?"};
+const Words kAbout{
+    "A tablet that bends by itself, and light that stays on it: few motors make the shape, a projector the rest.",
+    "Ein Tablet, das sich von selbst biegt, und Licht, das darauf bleibt: wenige Motoren geben die Form, ein Projektor "
+    "alles andere."};
 
 QPixmap pictureOf(const Demo& demo) {
     try {
@@ -143,6 +147,12 @@ ApplicationsPage::ApplicationsPage(Studio& studio, QWidget& window, For whom, co
     heading_->setStyleSheet("font-size: 26px; font-weight: 600;");
     heading_->setAlignment(Qt::AlignHCenter);
     column->addWidget(heading_);
+    about_ = new QLabel(this);
+    about_->setObjectName("applications.about");
+    about_->setProperty("look", "muted");
+    about_->setAlignment(Qt::AlignHCenter);
+    about_->setWordWrap(true);
+    column->addWidget(about_);
     if (whom == For::host) addKeptWork();
     area_ = new QScrollArea(this);
     area_->setWidgetResizable(true);
@@ -217,7 +227,7 @@ void ApplicationsPage::addCards(const Offered& offered) {
     grid_->setSpacing(kGap);
     middle->addLayout(grid_, 0, 0, Qt::AlignCenter);
     for (const Demo& demo : demos()) {
-        if (whom_ == For::visitors && !offered(demo)) continue;
+        if (whom_ == For::visitors && (!demo.forVisitors || !offered(demo))) continue;
         auto* card = new Card(studio_, demo, shelf);
         connect(card, &QAbstractButton::clicked, this, [this, &demo] { emit chosen(demo); });
         connect(&studio_.settings, &Settings::languageChanged, card, [card] { card->say(); });
@@ -286,6 +296,7 @@ QPushButton* ApplicationsPage::addFootButton(const char* name, const Words& word
 
 void ApplicationsPage::say() {
     heading_->setText(studio_.settings.say(kHeading));
+    about_->setText(studio_.settings.say(kAbout));
     for (const auto& [button, words] : said_) button->setText(studio_.settings.say(words));
     showKeptWork();
 }
@@ -297,7 +308,7 @@ void ApplicationsPage::arrange() {
     const int line = kept_ != nullptr && !kept_->isHidden() ? kept_->sizeHint().height() + kGap : 0;
     const int margin = std::max(4, kMargin - line / 2);
     layout()->setContentsMargins(kMargin, kTop + margin, kMargin, margin);
-    const int high = height() - kTop - 2 * margin - 130 - line;
+    const int high = height() - kTop - 2 * margin - 130 - about_->sizeHint().height() - line;
     const auto count = static_cast<int>(cards_.size());
     int columns = 1, card = kLeastCard;
     for (int tried = 1; tried <= std::min(kMostColumns, count); ++tried) {

@@ -57,7 +57,7 @@ private:
     };
     Studio& studio_;
     For whom_;
-    QLabel* heading_ = nullptr;
+    QLabel *heading_, *about_ = nullptr;
     QWidget* kept_ = nullptr; ///< for the host, while there is kept work
     QLabel* keptName_ = nullptr;
     QPushButton* keptAll_ = nullptr;

@@ -123,6 +123,28 @@ void addVisitors(Studio& studio, QDialog& dialog) {
     dialog.layout()->addWidget(muted("Without a visitor for so long, the next application shows.", &dialog));
 }
 
+void addBareInlay(Studio& studio, QDialog& dialog) {
+    auto* corner = new QComboBox(&dialog);
+    corner->setObjectName("settings.bareCorner");
+    corner->addItems({"Nowhere", "Top left", "Top right", "Bottom left"}); // as BareInlay::Corner
+    auto* share = new QSpinBox(&dialog);
+    share->setObjectName("settings.bareShare");
+    share->setRange(15, 40);
+    share->setSuffix(" %");
+    share->setToolTip("Of the width of the view");
+    share->setKeyboardTracking(false);
+    const BareInlay shown = studio.settings.bareInlay();
+    corner->setCurrentIndex(static_cast<int>(shown.corner));
+    share->setValue(static_cast<int>(std::lround(100.0 * shown.share)));
+    const auto take = [corner, share, &studio] {
+        studio.settings.setBareInlay({static_cast<BareInlay::Corner>(corner->currentIndex()), 0.01 * share->value()});
+    };
+    QObject::connect(corner, &QComboBox::currentIndexChanged, &studio.settings, take);
+    QObject::connect(share, &QSpinBox::valueChanged, &studio.settings, take);
+    dialog.layout()->addWidget(makeRow("&Bare device in full view", corner, &dialog));
+    dialog.layout()->addWidget(makeRow("Its &width", share, &dialog));
+}
+
 void addMemory(Studio& studio, QDialog& dialog) {
     dialog.layout()->addWidget(makeHeading("Memory", &dialog));
     auto* row = new QWidget(&dialog);
@@ -193,6 +215,7 @@ void openSettings(Studio& studio, QWidget& window) {
     addLook(studio, *dialog);
     addMatching(studio, *dialog);
     addVisitors(studio, *dialog);
+    addBareInlay(studio, *dialog);
     addMemory(studio, *dialog);
     static_cast<QVBoxLayout*>(dialog->layout())->addStretch(1);
     addClose(*dialog);

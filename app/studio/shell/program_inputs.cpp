@@ -7,6 +7,7 @@
 
 #include <QKeyEvent>
 #include <QPointingDevice>
+#include <QWheelEvent>
 
 namespace lumorph::studio {
 namespace {
@@ -119,8 +120,13 @@ bool ProgramInputs::eventFilter(QObject* watched, QEvent* event) {
 
 /// A finger points as long as it lies there, a mouse anyway.
 bool ProgramInputs::pointByPress(const QEvent& event) {
-    if (event.type() == QEvent::Wheel) return true;
+    if (event.type() == QEvent::Wheel) {
+        const double notches = static_cast<const QWheelEvent&>(event).angleDelta().y() / 120.0;
+        if (notches != 0.0) loop_.input("wheel", notches);
+        return true;
+    }
     const auto& mouse = static_cast<const QMouseEvent&>(event);
+    loop_.input("pointer.held", event.type() == QEvent::MouseButtonRelease ? 0.0 : 1.0);
     if (event.type() != QEvent::MouseButtonRelease)
         point(mouse.position());
     else if (isByTouch(mouse))
@@ -140,6 +146,7 @@ void ProgramInputs::letGo() {
     if (std::exchange(pointed_, false)) {
         loop_.input("pointer.x", 0.0);
         loop_.input("pointer.y", 0.0);
+        loop_.input("pointer.held", 0.0);
         loop_.input("pointer.over", 0.0);
     }
     for (const int key : std::exchange(held_, {})) loop_.input(inputOf(key), 0.0);
@@ -153,6 +160,8 @@ bool ProgramInputs::press(int key, bool down) {
     loop_.input(inputOf(key), down ? 1.0 : 0.0);
     return true;
 }
+
+bool isViewKey(int key) { return key == Qt::Key_B || key == Qt::Key_L; }
 
 bool isProgramKey(int key) { return inputOf(key) != nullptr; }
 

@@ -190,7 +190,7 @@ bool VisitorDesk::mayHave(const QObject& watched, const QEvent& event) const {
     if (isPointing(event.type())) return takesProgramInputs(watched);
     if (!isKey(event.type())) return false;
     const int key = static_cast<const QKeyEvent&>(event).key();
-    return isHelpKey(key) || isProgramKey(key);
+    return isHelpKey(key) || isProgramKey(key) || isViewKey(key);
 }
 
 /// Whatever shows, and whoever does something with it, stays; so does what the host has changed.

@@ -47,6 +47,8 @@ std::vector<KeyLine> keyLines(bool steps, bool compares) {
     std::vector<KeyLine> lines{{"R", {"Begin again", "Von vorn"}}, {"N", {"Next", "Weiter"}}};
     if (steps) lines.push_back({"0-6", {"Choose", "Auswählen"}});
     if (compares) lines.push_back({"O", {"With and without", "Mit und ohne"}});
+    lines.push_back({"L", {"Light away and back", "Licht weg und wieder an"}});
+    lines.push_back({"B", {"The bare device beside it", "Das Gerät ohne Licht daneben"}});
     lines.push_back({"A", {"Leave it to itself", "Allein laufen lassen"}});
     lines.push_back({"H", {"This help", "Diese Hilfe"}});
     lines.push_back({"Esc", {"All applications", "Alle Anwendungen"}});

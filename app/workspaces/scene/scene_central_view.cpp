@@ -6,6 +6,7 @@
 #include <utility>
 
 #include <QVBoxLayout>
+#include <QVariantAnimation>
 
 #include "app/applications/demo.h"
 #include "app/studio/rendering/show_frames.h"
@@ -31,6 +32,9 @@ namespace {
 
 constexpr int kViewMargin = 12;
 constexpr int kNoticeWidth = 480;
+constexpr int kInlayMargin = 20;
+constexpr double kInlayLower = 0.3; ///< radians
+constexpr int kFadeMilliseconds = 900;
 
 /// The angle between two ways to look at a centre.
 double degreesBetween(const glm::vec3& a, const glm::vec3& b, const glm::vec3& centre) {
@@ -53,9 +57,12 @@ struct SceneCentralView::Data {
 
     ViewPane* addPane(ScenePane part, const ShowView& view, const QString& title);
     void addDevice();
+    void addInlay();
     void addFloating();
     void arrange();
     void showForVisitors(bool on);
+    void arrangeInlay();
+    void takeViewKey(int key);
     void enlarge(ScenePane part);
     void showScene();    ///< of the device
     void showCaptions(); ///< of all pictures
@@ -81,6 +88,9 @@ struct SceneCentralView::Data {
     QWidget* views;
     std::map<ScenePane, ViewPane*> panes;
     std::map<ScenePane, std::unique_ptr<ItemHandles>> handles;
+    ViewPane* inlay = nullptr;          ///< the bare device, for visitors
+    bool inlayHidden = false;           ///< by a key
+    QVariantAnimation fade;             ///< of the light
     std::vector<ProgramInputs*> inputs; ///< of the panes that visitors may play in
     ViewportWidget* device = nullptr;
     PaneCaption* deviceCaption = nullptr;
@@ -112,6 +122,7 @@ SceneCentralView::Data::Data(SceneCentralView& stage, Studio& shared)
     addPane(ScenePane::cropped, viewOf(ShowView::Kind::lab, ShowView::Bend::without), tr("Cropped"));
     addPane(ScenePane::uncropped, viewOf(ShowView::Kind::lab, ShowView::Bend::forViewer), tr("Uncropped"));
     addDevice();
+    addInlay();
     addFloating();
 }
 
@@ -125,6 +136,7 @@ ViewPane* SceneCentralView::Data::addPane(ScenePane part, const ShowView& view, 
     pane->setObjectName(kNames.at(part));
     panes[part] = pane;
     connect(pane, &ViewPane::enlarged, &self, [this, part] { enlarge(part); });
+    connect(pane, &ViewPane::viewKey, &self, [this](int key) { takeViewKey(key); });
     if (part == ScenePane::projector) return pane;
     inputs.push_back(new ProgramInputs(studio.loop, *pane));
     connect(pane, &ViewPane::dragBegan, &self,
@@ -158,6 +170,52 @@ void SceneCentralView::Data::addDevice() {
         }
         showScene();
     });
+}
+
+/// A hand's share of what one sees: beside light that fills the view nobody would notice that the device moves.
+void SceneCentralView::Data::addInlay() {
+    ShowView bare = viewOf(ShowView::Kind::lab);
+    bare.lit = false;
+    bare.lower = kInlayLower;
+    inlay = new ViewPane(studio.show, bare, tr("Device without light"), views);
+    inlay->setObjectName("scene.inlay");
+    inlay->setAttribute(Qt::WA_TransparentForMouseEvents);
+    inlay->setFocusPolicy(Qt::NoFocus);
+    inlay->setFramed(true);
+    inlay->caption().hide();
+    inlay->hide();
+    connect(&studio.settings, &Settings::bareInlayChanged, &self, [this] { arrange(); });
+    fade.setDuration(kFadeMilliseconds);
+    fade.setStartValue(1.0);
+    fade.setEndValue(0.0);
+    connect(&fade, &QVariantAnimation::valueChanged, &self, [this](const QVariant& share) {
+        for (const auto& [part, pane] : panes)
+            if (part != ScenePane::projector) pane->setLight(share.toDouble());
+    });
+}
+
+void SceneCentralView::Data::takeViewKey(int key) {
+    if (key == Qt::Key_B) {
+        inlayHidden = !inlayHidden;
+        return arrangeInlay();
+    }
+    const bool away = fade.direction() == QVariantAnimation::Forward && fade.currentValue().toDouble() < 1.0;
+    fade.setDirection(away ? QVariantAnimation::Backward : QVariantAnimation::Forward);
+    if (fade.state() != QVariantAnimation::Running) fade.start();
+}
+
+void SceneCentralView::Data::arrangeInlay() {
+    using Corner = BareInlay::Corner;
+    const BareInlay wanted = studio.settings.bareInlay();
+    const bool shown = forVisitors && !comparing && !inlayHidden && wanted.corner != Corner::none &&
+                       alone != ScenePane::device && !page->isVisibleTo(views);
+    const int wide = static_cast<int>(std::lround(wanted.share * views->width()));
+    QRect box(kInlayMargin, kInlayMargin, wide, wide * 5 / 8);
+    if (wanted.corner == Corner::topRight) box.moveRight(views->width() - kInlayMargin);
+    if (wanted.corner == Corner::bottomLeft) box.moveBottom(views->height() - kInlayMargin);
+    inlay->setGeometry(box);
+    inlay->setVisible(shown);
+    inlay->raise();
 }
 
 void SceneCentralView::Data::addFloating() {
@@ -234,6 +292,7 @@ void SceneCentralView::Data::arrange() {
         QRect(QPoint(size.width() - card.width() - kViewMargin, size.height() - card.height() - kViewMargin), card));
     const int wide = std::min(kNoticeWidth, size.width() - 2 * kViewMargin);
     notices->setGeometry((size.width() - wide) / 2, kViewMargin, wide, notices->sizeHint().height());
+    arrangeInlay();
     latency->raise();
     notices->raise();
     showScene();
@@ -265,6 +324,10 @@ void SceneCentralView::Data::say() {
 /// A demonstration is seen by one eye, and large; a host's own show as he has arranged it.
 void SceneCentralView::Data::showForVisitors(bool on) {
     if (on != std::exchange(forVisitors, on)) std::swap(alone, aloneElsewhere);
+    inlayHidden = false;
+    fade.stop();
+    fade.setDirection(QVariantAnimation::Forward);
+    fade.setCurrentTime(0);
     if (on) alone = studio.project.demo() != nullptr ? std::optional(ScenePane::eye) : aloneElsewhere;
     for (ProgramInputs* one : inputs) one->setForVisitors(on);
     for (const auto& [part, pane] : panes) pane->caption().setVisible(!on);
@@ -416,6 +479,7 @@ SceneCentralView::~SceneCentralView() {
 void SceneCentralView::setActive(bool active) {
     data_->active = active;
     for (const auto& [part, pane] : data_->panes) pane->setActive(active);
+    data_->inlay->setActive(active);
     data_->device->setActive(active);
     data_->showScene();
 }

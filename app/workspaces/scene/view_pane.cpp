@@ -9,6 +9,7 @@
 #include <QWheelEvent>
 
 #include "app/studio/look/palette.h"
+#include "app/studio/shell/program_inputs.h"
 #include "app/studio/viewport/view_marks.h"
 
 namespace lumorph::studio {
@@ -82,8 +83,8 @@ void PaneCaption::paintEvent(QPaintEvent* /*event*/) {
 }
 
 ViewPane::ViewPane(ShowFeed& feed, const ShowView& view, const QString& title, QWidget* parent)
-    : QWidget(parent), feed_(feed), id_(feed.add()), view_(view), caption_(new PaneCaption(title, this)),
-      waiting_(tr("Preparing the view...")) {
+    : QWidget(parent), feed_(feed), id_(feed.add()), bareId_(feed.add()), view_(view),
+      caption_(new PaneCaption(title, this)), waiting_(tr("Preparing the view...")) {
     setAttribute(Qt::WA_OpaquePaintEvent);
     setMouseTracking(true);
     setFocusPolicy(Qt::StrongFocus);
@@ -92,7 +93,10 @@ ViewPane::ViewPane(ShowFeed& feed, const ShowView& view, const QString& title, Q
     connect(&feed_, &ShowFeed::shown, this, &ViewPane::take);
 }
 
-ViewPane::~ViewPane() { feed_.drop(id_); }
+ViewPane::~ViewPane() {
+    feed_.drop(id_);
+    feed_.drop(bareId_);
+}
 
 void ViewPane::take() {
     if (!isVisible() || !active_) return;
@@ -109,10 +113,25 @@ void ViewPane::ask() {
     if (!active_ || !isVisible()) {
         asked_ = {};
         feed_.drop(id_);
+        feed_.drop(bareId_);
         return;
     }
     asked_ = pixels();
     feed_.want(id_, view_, asked_);
+    if (light_ == 1.0) return feed_.drop(bareId_);
+    ShowView bare;
+    bare.kind = ShowView::Kind::lab;
+    bare.observer = view_.observer;
+    bare.bend = view_.bend;
+    bare.lit = false;
+    feed_.want(bareId_, bare, asked_);
+}
+
+void ViewPane::setLight(double share) {
+    const bool whole = light_ == 1.0;
+    if (std::exchange(light_, share) == share) return;
+    if (whole != (share == 1.0)) ask();
+    update();
 }
 
 void ViewPane::setView(const ShowView& view) {
@@ -181,15 +200,20 @@ void ViewPane::paintEvent(QPaintEvent* /*event*/) {
     const double ratio = devicePixelRatioF();
     painter.scale(1.0 / ratio, 1.0 / ratio);
     if (box.size() != pixels()) painter.fillRect(QRect(QPoint(0, 0), pixels()), colors.window);
-    if (box.size() == shown.size()) {
-        painter.drawImage(box.topLeft(), shown);
-    } else {
-        painter.setRenderHint(QPainter::SmoothPixmapTransform);
-        painter.drawImage(box, shown);
+    painter.setRenderHint(QPainter::SmoothPixmapTransform, box.size() != shown.size());
+    painter.drawImage(box, shown);
+    if (const QImage bare = light_ == 1.0 ? QImage() : feed_.picture(bareId_); !bare.isNull()) {
+        painter.setOpacity(1.0 - light_);
+        painter.drawImage(box, bare);
     }
     painter.restore();
     if (overlay_) overlay_->paint(painter, size());
     if (!label_.isEmpty()) paintLabel(painter);
+    if (framed_) {
+        painter.setPen(QPen(QColor(255, 255, 255, 110), 2.0));
+        painter.setBrush(Qt::NoBrush);
+        painter.drawRect(rect().adjusted(1, 1, -1, -1));
+    }
     if (ringed_) paintFocusRing(painter, size(), colors);
 }
 
@@ -273,7 +297,8 @@ bool ViewPane::event(QEvent* event) {
     // Esc takes a drag back and does nothing else.
     if (event->type() == QEvent::ShortcutOverride) {
         const int key = static_cast<QKeyEvent*>(event)->key();
-        if ((drag_ != Drag::none && key == Qt::Key_Escape) || stepOf(key)) {
+        const bool plain = !(static_cast<QKeyEvent*>(event)->modifiers() & ~Qt::KeypadModifier);
+        if ((drag_ != Drag::none && key == Qt::Key_Escape) || stepOf(key) || (plain && isViewKey(key))) {
             event->accept();
             return true;
         }
@@ -284,6 +309,7 @@ bool ViewPane::event(QEvent* event) {
 void ViewPane::keyPressEvent(QKeyEvent* event) {
     const bool dragging = drag_ == Drag::view || drag_ == Drag::overlay;
     if (event->key() == Qt::Key_Escape && dragging) return endDrag(false);
+    if (isViewKey(event->key()) && !event->modifiers() && !event->isAutoRepeat()) emit viewKey(event->key());
     const auto step = stepOf(event->key());
     if (!step || drag_ != Drag::none) return QWidget::keyPressEvent(event);
     emit dragBegan(Qt::LeftButton, event->modifiers());

@@ -45,9 +45,14 @@ public:
     void setOverlay(PaneOverlay* overlay) { overlay_ = overlay; }
     /// A sentence instead of a picture, while there is none.
     void setWaiting(const QString& text);
+    /// A picture within another.
+    void setFramed(bool on) { framed_ = on; }
     /// A few large words near the lower edge of the picture, for visitors; empty: none.
     void setLabel(const QString& text);
     [[nodiscard]] const QString& label() const noexcept { return label_; }
+    /// How much of the light is there, 0 to 1: without it one sees the bare device, from the same place.
+    void setLight(double share);
+    [[nodiscard]] double light() const noexcept { return light_; }
     [[nodiscard]] QImage picture() const { return feed_.picture(id_); }
     [[nodiscard]] QSize pixels() const; ///< of the screen
     /// A stage that is not seen asks for nothing. Seen again, its last picture stays until there is a new one.
@@ -60,6 +65,7 @@ signals:
     void wheeled(double notches);
     void clicked(const QPointF& at);
     void enlarged(); ///< a double click
+    void viewKey(int key);
 
 protected:
     bool event(QEvent* event) override;
@@ -85,14 +91,16 @@ private:
     [[nodiscard]] QRect pictureBox(const QSize& picture) const;
 
     ShowFeed& feed_;
-    const int id_;
+    const int id_, bareId_;
     ShowView view_;
     PaneCaption* caption_;
     PaneOverlay* overlay_ = nullptr;
     QString waiting_, label_;
+    double light_ = 1.0;
     QSize asked_;
     QImage before_; ///< while there is none of the feed
     bool active_ = false;
+    bool framed_ = false;
     bool ringed_ = false; ///< the focus came by key
     Drag drag_ = Drag::none;
     Qt::MouseButton button_ = Qt::NoButton;

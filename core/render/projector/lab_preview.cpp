@@ -23,11 +23,20 @@ ShaderFiles litFiles(std::vector<std::string> defines) {
     return files;
 }
 
+ShaderFiles roomLightFiles(std::vector<std::string> defines) {
+    ShaderFiles files = shaderFiles({"version.glsl", "camera.glsl", "physical.vert"},
+                                    {"version.glsl", "camera.glsl", "physical_normal.glsl", "room_light.frag"});
+    files.defines = std::move(defines);
+    return files;
+}
+
 } // namespace
 
 LabPreview::LabPreview()
     : flat_(shaderFiles({"version.glsl", "camera.glsl", "physical.vert"}, {"version.glsl", "flat.frag"})),
-      light_{Program(litFiles({})), Program(litFiles({"TABLE"}))},
+      room_(shaderFiles({"full_frame.vert"}, {"version.glsl", "noise.glsl", "room.frag"})),
+      roomLight_{Program(roomLightFiles({})), Program(roomLightFiles({"TABLE"}))}, light_{Program(litFiles({})),
+                                                                                          Program(litFiles({"TABLE"}))},
       measuredLight_{Program(litFiles({"RESPONSE"})), Program(litFiles({"RESPONSE", "TABLE"}))},
       mask_{Program(litFiles({"MASK"})), Program(litFiles({"MASK", "TABLE"}))} {}
 
@@ -42,26 +51,52 @@ void LabPreview::drawSurfaces(const Observer& observer, const DeviceSurface& dev
     table_.draw();
 }
 
-void LabPreview::addProjector(const Observer& observer, const DeviceSurface& device, const ProjectorTarget& projector,
-                              Light& light) {
-    for (Program* program : {&light.device, &light.table}) {
-        program->use();
-        setCamera(*program, observer.camera, observer.range.near, observer.range.far);
-        program->set("viewerPosition", glm::vec3(positionOf(observer.camera)));
-        setLight(*program, projector.projector);
-        setSight(*program, projector, 0);
-        bindTexture(1, projector.sent.texture());
-        program->set("sent", 1);
-        program->set("gamma", static_cast<float>(projector.projector.gamma));
-        if (projector.response) projector.response->set(*program, 2);
-        const bool onDevice = program == &light.device;
-        program->set("surfaceAlbedo",
-                     albedoOf(observer.installation, onDevice ? PhysicalSurface::device : PhysicalSurface::table));
-        if (onDevice) device.draw(*program);
+void LabPreview::drawWith(Light& light, const Observer& observer, const DeviceSurface& device,
+                          const std::function<void(Program&)>& set) {
+    for (const PhysicalSurface surface : {PhysicalSurface::device, PhysicalSurface::table}) {
+        const bool onDevice = surface == PhysicalSurface::device;
+        Program& program = onDevice ? light.device : light.table;
+        program.use();
+        setCamera(program, observer.camera, observer.range.near, observer.range.far);
+        program.set("viewerPosition", glm::vec3(positionOf(observer.camera)));
+        program.set("surfaceAlbedo", albedoOf(observer.installation, surface));
+        set(program);
+        if (onDevice) device.draw(program);
         if (onDevice) continue;
-        program->set("worldFromMesh", glm::mat4(1.0F));
+        program.set("worldFromMesh", glm::mat4(1.0F));
         table_.draw();
     }
+}
+
+void LabPreview::drawRoom(const Observer& observer, float light, const DeviceSurface& device) {
+    const CalibratedCamera& camera = observer.camera;
+    glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
+    room_.use();
+    room_.set("worldFromCamera", glm::mat4(glm::inverse(camera.cameraFromWorld)));
+    room_.set("viewerPosition", glm::vec3(positionOf(camera)));
+    room_.set("focal", glm::vec2(camera.focal));
+    room_.set("principal", glm::vec2(camera.principal));
+    room_.set("frameSize", glm::vec2(camera.size));
+    room_.set("tableHalf", 0.5F * observer.installation.tableSize);
+    room_.set("roomLight", light);
+    glDepthMask(GL_FALSE);
+    glBindVertexArray(noAttributes_.name());
+    glDrawArrays(GL_TRIANGLES, 0, 3);
+    glBindVertexArray(0);
+    glDepthMask(GL_TRUE);
+    drawWith(roomLight_, observer, device, [&](Program& program) { program.set("roomLight", light); });
+}
+
+void LabPreview::addProjector(const Observer& observer, const DeviceSurface& device, const ProjectorTarget& projector,
+                              Light& light) {
+    drawWith(light, observer, device, [&](Program& program) {
+        setLight(program, projector.projector);
+        setSight(program, projector, 0);
+        bindTexture(1, projector.sent.texture());
+        program.set("sent", 1);
+        program.set("gamma", static_cast<float>(projector.projector.gamma));
+        if (projector.response) projector.response->set(program, 2);
+    });
 }
 
 void LabPreview::addLight(const Observer& observer, const DeviceSurface& device,
@@ -74,11 +109,14 @@ void LabPreview::addLight(const Observer& observer, const DeviceSurface& device,
         addProjector(observer, device, *projector, projector->response ? measuredLight_ : light_);
 }
 
-void LabPreview::drawLit(const Observer& observer, float ambient, const DeviceSurface& device,
+void LabPreview::drawLit(const Observer& observer, float room, const DeviceSurface& device,
                          std::span<const ProjectorTarget* const> projectors) {
     if (!problem_.empty()) return;
     try {
-        drawSurfaces(observer, device, ambient, ambient);
+        if (room > 0.0F)
+            drawRoom(observer, room, device);
+        else
+            drawSurfaces(observer, device, 0.0F, 0.0F);
         addLight(observer, device, projectors);
     } catch (const DataError& error) {
         problem_ = error.subject() + ": " + error.why() + "; the lab is drawn without the light of projectors";
@@ -97,14 +135,14 @@ void LabPreview::drawStandIn(const Observer& observer, const DeviceSurface& devi
     }
 }
 
-void LabPreview::draw(GLuint framebuffer, const CalibratedCamera& observer, float ambient, const ShowFrame& frame,
+void LabPreview::draw(GLuint framebuffer, const CalibratedCamera& observer, float room, const ShowFrame& frame,
                       const DeviceSurface& device, std::span<const ProjectorTarget* const> projectors,
                       PictureOutput& out) {
     if (!radiance_ || radiance_->size() != observer.size) radiance_.emplace(observer.size, GL_RGBA16F);
     table_.fit(observer, frame.installation->tableSize);
     const Observer seen{observer, depthRange(observer, physicalBounds(frame)), *frame.installation};
     beginSurfaces(radiance_->framebuffer(), observer.size);
-    drawLit(seen, ambient, device, projectors);
+    drawLit(seen, room, device, projectors);
     if (!problem_.empty()) drawStandIn(seen, device);
     out.draw(framebuffer, *radiance_);
 }
@@ -123,8 +161,8 @@ void LabPreview::drawMask(GLuint framebuffer, const CalibratedCamera& observer, 
 
 std::size_t LabPreview::objectCount() const noexcept {
     std::size_t count = TableGrid::kObjects + (radiance_ ? ColorTarget::kObjects : 0);
-    count += flat_.objectCount();
-    for (const Light* light : {&light_, &measuredLight_, &mask_})
+    count += 1 + flat_.objectCount() + room_.objectCount();
+    for (const Light* light : {&roomLight_, &light_, &measuredLight_, &mask_})
         count += light->device.objectCount() + light->table.objectCount();
     return count;
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <span>
 #include <string>
@@ -17,7 +18,7 @@ public:
     /// Into a framebuffer of the observer's size, sRGB encoded by it or, if it does not encode, by this. Where the
     /// driver refuses a program of light, a bright device on a dark table (black, if that is refused too), and
     /// `problem`.
-    void draw(GLuint framebuffer, const CalibratedCamera& observer, float ambient, const ShowFrame& frame,
+    void draw(GLuint framebuffer, const CalibratedCamera& observer, float room, const ShowFrame& frame,
               const DeviceSurface& device, std::span<const ProjectorTarget* const> projectors, PictureOutput& out);
     /// White where a projector reaches what the observer sees. Throws DataError where the driver refuses the program:
     /// what stood in for it would be wrong.
@@ -34,23 +35,27 @@ private:
         DepthRange range;
         const Installation& installation;
     };
-    void drawSurfaces(const Observer& observer, const DeviceSurface& device, float onDevice, float onTable);
-    void drawLit(const Observer& observer, float ambient, const DeviceSurface& device,
-                 std::span<const ProjectorTarget* const> projectors);
-    void drawStandIn(const Observer& observer, const DeviceSurface& device);
-    void addLight(const Observer& observer, const DeviceSurface& device,
-                  std::span<const ProjectorTarget* const> projectors);
     /// Programs of one kind of light, on device and table.
     struct Light {
         Program device, table;
     };
+    void drawSurfaces(const Observer& observer, const DeviceSurface& device, float onDevice, float onTable);
+    void drawWith(Light& light, const Observer& observer, const DeviceSurface& device,
+                  const std::function<void(Program&)>& set);
+    void drawRoom(const Observer& observer, float light, const DeviceSurface& device);
+    void drawLit(const Observer& observer, float room, const DeviceSurface& device,
+                 std::span<const ProjectorTarget* const> projectors);
+    void drawStandIn(const Observer& observer, const DeviceSurface& device);
+    void addLight(const Observer& observer, const DeviceSurface& device,
+                  std::span<const ProjectorTarget* const> projectors);
     void addProjector(const Observer& observer, const DeviceSurface& device, const ProjectorTarget& projector,
                       Light& light);
 
     TableGrid table_;
     std::optional<ColorTarget> radiance_;
-    Program flat_;
-    Light light_, measuredLight_, mask_;
+    gl::VertexArray noAttributes_;
+    Program flat_, room_;
+    Light roomLight_, light_, measuredLight_, mask_;
     std::string problem_;
     bool standInRefused_ = false;
 };

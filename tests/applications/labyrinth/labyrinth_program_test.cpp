@@ -66,6 +66,22 @@ TEST(LabyrinthProgram, WhoLeansItPlaysAtOnceAndWhoGoesLeavesItToItself) {
     EXPECT_TRUE(program.playsItself());
 }
 
+TEST(LabyrinthProgram, SaysHowTheRunStandsAndFirstHasSomethingThatRises) {
+    LabyrinthProgram program(1, bundledLevels());
+    Visit visit(program);
+    visit.frames(0.5);
+    const auto first = visit.content().caption;
+    EXPECT_NE(first->sentence.english.find("\n0 s, 0 points"), std::string::npos) << first->sentence.english;
+    visit.frames(0.2);
+    EXPECT_EQ(visit.content().caption, first) << "another one only where it says something else";
+    visit.frames(2.0);
+    EXPECT_NE(visit.content().caption->sentence.german.find("\n2 s, 0 Punkte"), std::string::npos)
+        << visit.content().caption->sentence.german;
+    const std::vector<LevelCell>& cells = program.game().level().cells;
+    const auto floor = [](const LevelCell& cell) { return cell.tile == Tile::floor ? cell.height : 0; };
+    EXPECT_GE(floor(*std::ranges::max_element(cells, {}, floor)), 3) << "of the first level, steps";
+}
+
 TEST(LabyrinthProgram, PointerStickAndDeviceLeanAlike) {
     const struct {
         std::vector<ShowInput> inputs;

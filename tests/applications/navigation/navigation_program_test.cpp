@@ -103,6 +103,37 @@ TEST(NavigationProgram, WhoComesPansZoomsAndTurnsAtOnce) {
     }
 }
 
+TEST(NavigationProgram, FliesOnlyWhileThePointerMovesOrIsHeld) {
+    for (const bool held : {false, true}) {
+        NavigationProgram program(1, valley());
+        Visit visit(program);
+        visit.frame({{"wheel", 4.0}}); // there is room to pan
+        visit.frame({{"pointer.x", 0.5}, {"pointer.held", held ? 1.0 : 0.0}});
+        visit.frames(1.5);
+        const glm::dvec2 from = program.view().centre;
+        visit.frames(1.5);
+        EXPECT_EQ(glm::distance(program.view().centre, from) > 10.0, held) << "metres";
+        EXPECT_FALSE(program.playsItself());
+    }
+}
+
+TEST(NavigationProgram, TheWheelZoomsAndWhoStaysIdleIsBroughtBackToTheLastPlace) {
+    NavigationProgram program(1, valley());
+    Visit visit(program, kLongFrame);
+    visit.frame({{"key.next", 1.0}});
+    visit.frames(10.0);
+    const MapView place = program.view();
+    visit.frame({{"wheel", 2.0}});
+    EXPECT_LT(program.view().width, 0.8 * place.width);
+    visit.frame({{"wheel", -6.0}, {"pointer.y", -1.0}});
+    visit.frames(1.0);
+    EXPECT_GT(program.view().width, 1.2 * place.width);
+    visit.frames(26.0);
+    EXPECT_FALSE(program.playsItself());
+    EXPECT_LT(glm::distance(program.view().centre, place.centre), 1.0);
+    EXPECT_NEAR(program.view().width, place.width, 1.0);
+}
+
 TEST(NavigationProgram, TheLeaningDevicePans) {
     NavigationProgram program(1, valley());
     Visit visit(program);

@@ -243,6 +243,40 @@ TEST(SpatialFrames, WithoutTheLabsShaderItShowsTheBareDevice) {
     EXPECT_EQ(glGetError(), static_cast<GLenum>(GL_NO_ERROR));
 }
 
+double linearOf(std::uint8_t value) {
+    const double share = value / 255.0;
+    return share <= 0.04045 ? share / 12.92 : std::pow((share + 0.055) / 1.055, 2.4);
+}
+
+// Light adds up: what is seen in a dim room is what projectors make in a dark one, and what the room makes without
+// them.
+TEST(SpatialFrames, ARoomThatIsDimAddsItsLightAndShowsFloorAndWalls) {
+    const HeadlessContext context;
+    SpatialRenderer renderer;
+    renderer.setEyeSize({320, 200});
+    SceneInRoom scene = unlitScene(glm::vec3(0.5F, 0.1F, 0.1F), glm::vec3(0.1F, 0.4F, 0.1F), {overhead()});
+    const ShowFrame frame = frameOf(scene, liftedFlaps());
+    renderer.draw(frame);
+    const CalibratedCamera low = cameraLookingAt({0.9, 0.5, 1.0}, {0.0, 0.0, 0.0}, {320, 200}, 160.0);
+    const Image dark = renderer.readLab(low), dim = renderer.readLab(low, kDimRoom), bare = renderer.readBare(low);
+    int black = 0, lit = 0, floor = 0;
+    for (std::size_t k = 0; k < dim.pixels().size(); ++k) {
+        const Image::Pixel &without = dark.pixels()[k], &with = dim.pixels()[k], &room = bare.pixels()[k];
+        black += with[0] + with[1] + with[2] == 0 ? 1 : 0;
+        lit += without[0] + without[1] > 60 ? 1 : 0;
+        floor += without == Image::Pixel{0, 0, 0, 255} ? 1 : 0;
+        for (std::size_t c = 0; c < 3; ++c) {
+            if (with[c] > 250 || room[c] > 250) continue;
+            const double sum = linearOf(without[c]) + linearOf(room[c]) * double{kDimRoom} / double{kWorkRoom};
+            ASSERT_NEAR(linearOf(with[c]), sum, 0.006) << k;
+        }
+    }
+    EXPECT_EQ(black, 0);
+    EXPECT_GT(lit, 500);
+    EXPECT_GT(floor, 5000) << "what the table does not fill was black";
+    EXPECT_EQ(renderer.warnings().size(), 0U);
+}
+
 TEST(SpatialFrames, WithoutEvenTheLabsStandInProjectorsGoOn) {
     const HeadlessContext context;
     const BrokenShader broken("flat.frag");
