@@ -67,8 +67,9 @@ struct Demo {
     std::unique_ptr<ShowProgram> (*program)(const ProgramStart& start, const Progress& progress) = nullptr;
     bool keeps = false;                   ///< its program wants something kept (ShowContent::keepsake)
     std::vector<DemoOption> options = {}; ///< that its program may be told
-    bool forVisitors = true;              ///< else on the host's cards alone
-    bool compares = false;                ///< its program shows at `key.off` what it does with and without
+    bool hostEdits = false;  ///< a host gets the scene of `open`, as where there are steps; visitors get `program`
+    bool forVisitors = true; ///< else on the host's cards alone
+    bool compares = false;   ///< its program shows at `key.off` what it does with and without
 };
 
 /// What is written under the device without and with view dependence, where both are seen beside each other

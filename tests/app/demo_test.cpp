@@ -204,7 +204,7 @@ TEST(Demo, WrongUseIsNamed) {
     writeFile(inputs, std::string(R"({"inputs": [{"seconds": -1, "name": "key.left", "value": 1}]})"));
     refused({"labyrinth", "--json", "--input", inputs}, 1, "inputs[0].seconds");
     refused({"labyrinth", "--json", "--input", (folder / "none.json").string()}, 1, "none.json");
-    refused({"water", "--json", "--input", inputs}, 2, "goes by time alone");
+    refused({"field", "--json", "--input", inputs}, 2, "goes by time alone");
     refused({"navigation", "--json", "--bend", "sideways"}, 2,
             "bend 'sideways': it is no way to bend; say off, on or beside");
     refused({"water", "--json", "--bend", "on"}, 2, "--bend: the demo 'water' has no such option; leave it out");

@@ -129,8 +129,9 @@ TEST_F(SessionTest, TheApplicationThatShowedShowsAgain) {
         Audience audience;
         bool plays;
     };
-    for (const Row& row : {Row{"labyrinth", Audience::host, true}, Row{"water", Audience::visitors, false},
-                           Row{"techniques", Audience::host, false}, Row{"techniques", Audience::visitors, true}}) {
+    for (const Row& row : {Row{"labyrinth", Audience::host, true}, Row{"water", Audience::host, false},
+                           Row{"water", Audience::visitors, true}, Row{"techniques", Audience::host, false},
+                           Row{"techniques", Audience::visitors, true}}) {
         {
             ProjectWorld world;
             std::shared_ptr<ShowProgram> program;

@@ -190,7 +190,9 @@ struct SeenTable {
         const auto differs = [](double a, double b) { return std::abs(a - b) > 0.002; };
         if (!device || !std::ranges::equal(stood, strokes, std::not_fn(differs))) {
             stood = strokes;
-            device = std::make_unique<CheckLab>(truth, *rig, stood, CheckLabOptions{}, kSeed);
+            CheckLabOptions quick; // servos alone are looked at some two thousand times
+            quick.pictures.samples = 1;
+            device = std::make_unique<CheckLab>(truth, *rig, stood, quick, kSeed);
         }
         return device->photograph(0, grey);
     }
@@ -226,7 +228,7 @@ protected:
         table->rig = window.state().rig.rig;
         table->truth = withLabCamera(trueRoom(labTruth(assumedRoom()), table->rig->actuators(), kSeed));
         CalibratedCamera& eyes = table->truth.cameras.front().camera;
-        eyes = withSize(eyes, {480, 384}); // servos alone are looked at some two thousand times
+        eyes = withSize(eyes, {640, 512}); // its pictures are worked out in a few hundredths of a second
         table->board =
             std::make_unique<BoardLab>(table->truth, parseCalibrationBoard(kBoard), BoardLabOptions{}, kSeed);
         LightLabOptions options;

@@ -5,6 +5,7 @@
 #include <string>
 #include <utility>
 
+#include "app/applications/demo_items.h"
 #include "core/scene/posed_scene.h"
 
 namespace lumorph {
@@ -12,7 +13,6 @@ namespace {
 
 constexpr double kAside = 0.35; ///< of the way from the middle to the edge
 constexpr double kPressed = 0.5;
-constexpr int kColumns = 57, kRows = 41; ///< samples of what the servos follow
 
 std::shared_ptr<const ShowCaption> captionOf(const Technique& technique, bool on) {
     const std::string number = std::to_string(technique.key) + "  ";
@@ -36,26 +36,6 @@ std::shared_ptr<const SceneAssets> picturesOf(const std::vector<std::shared_ptr<
         all.items.push_back(std::move(item));
     }
     return loadSceneAssets(all, {});
-}
-
-/// What the item that servos follow is at a moment, over all of it.
-HeightGrid heightsOf(const SceneItem& item, double seconds) {
-    const auto& field = std::get<HeightItem>(item.kind);
-    const glm::vec2 half = 0.5F * field.size;
-    HeightGrid grid;
-    grid.min = -glm::dvec2(half);
-    grid.max = glm::dvec2(half);
-    grid.columns = kColumns;
-    grid.rows = kRows;
-    std::vector<glm::vec2> points;
-    for (int j = 0; j < kRows; ++j)
-        for (int i = 0; i < kColumns; ++i)
-            points.push_back(half * glm::vec2(2.0F * static_cast<float>(i) / (kColumns - 1) - 1.0F,
-                                              2.0F * static_cast<float>(j) / (kRows - 1) - 1.0F));
-    grid.heights.resize(points.size());
-    sampleHeights(field, nullptr, seconds, points, grid.heights);
-    for (float& height : grid.heights) height += item.position.y;
-    return grid;
 }
 
 } // namespace
@@ -84,7 +64,7 @@ ShowContent TechniquesProgram::frame(const ShowMoment& moment) {
     content.scene = ready.scenes[on_ ? 1 : 0];
     content.assets = pictures_;
     content.caption = ready.captions[on_ ? 1 : 0];
-    content.target = heightsOf(*drivingItem(*content.scene), moment.seconds);
+    content.target = gridOf(*drivingItem(*content.scene), moment.seconds);
     content.following = Following::split;
     return content;
 }

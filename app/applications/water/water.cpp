@@ -3,6 +3,7 @@
 #include <glm/gtc/quaternion.hpp>
 
 #include "app/applications/demo_items.h"
+#include "app/applications/water/water_program.h"
 #include "core/scene/material_library.h"
 
 namespace lumorph {
@@ -47,13 +48,16 @@ Scene waterScene() {
 }
 
 Demo waterDemo() {
-    return {
-        .name = "water",
-        .title = {"A sea you can feel", "Ein Meer, das man fühlt"},
-        .sentence = {"The tablet lifts the long waves, light paints the short ones, and a buoy floats on both.",
-                     "Das Tablet hebt die langen Wellen, Licht malt die kurzen, und eine Boje schwimmt auf beiden."},
-        .thumbnail = "thumbnails/water.png",
-        .open = [](const Progress& progress) { return bundledProject("water", progress); }};
+    return {.name = "water",
+            .title = {"A sea you can feel", "Ein Meer, das man fühlt"},
+            .sentence = {"Lean it, and the water runs: the tablet lifts the long waves, light paints the short ones.",
+                         "Neige es, und das Wasser läuft: Das Tablet hebt die langen Wellen, Licht malt die kurzen."},
+            .thumbnail = "thumbnails/water.png",
+            .open = [](const Progress& progress) { return bundledProject("water", progress); },
+            .program = [](const ProgramStart&, const Progress&) -> std::unique_ptr<ShowProgram> {
+                return std::make_unique<WaterProgram>();
+            },
+            .hostEdits = true};
 }
 
 } // namespace lumorph

@@ -16,9 +16,9 @@
 
 namespace lumorph::studio {
 
-/// Where visitors see the bare device beside the picture; the lower right corner is the buttons'.
+/// Where visitors see the bare device beside the picture; in the other corners are words and buttons.
 struct BareInlay {
-    enum class Corner { none, topLeft, topRight, bottomLeft };
+    enum class Corner { none, topRight, bottomLeft };
     Corner corner = Corner::topRight;
     double share = 0.26; ///< of the view's width
     bool operator==(const BareInlay&) const = default;

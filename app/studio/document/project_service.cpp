@@ -108,7 +108,7 @@ Played playedOf(const OpenDemo& open, const fs::path& folder, const Progress& pr
 }
 
 bool playsFor(Audience audience, const Demo& demo) {
-    return demo.program && (audience == Audience::visitors || demo.steps().empty());
+    return demo.program && (audience == Audience::visitors || (demo.steps().empty() && !demo.hostEdits));
 }
 
 /// Where a session is read, and what of it is copied where.

@@ -121,7 +121,12 @@ ProjectorOutputs::Output& ProjectorOutputs::open(std::size_t projector) {
 
 void ProjectorOutputs::showInWindow(std::size_t projector) {
     if (projector >= count()) return;
+    ProjectorWindow* known = outputs_[projector].window.get();
     Output& output = open(projector);
+    if (!known) { // in the lower right corner: what the studio says next stands at the upper left
+        const QRect room = output.window->screen()->availableGeometry();
+        output.window->move(room.right() - output.window->width(), room.bottom() - output.window->height());
+    }
     output.window->isFullScreen() ? output.window->leaveScreen() : output.window->show();
     output.window->raise();
     emit changed();

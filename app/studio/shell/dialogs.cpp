@@ -126,7 +126,7 @@ void addVisitors(Studio& studio, QDialog& dialog) {
 void addBareInlay(Studio& studio, QDialog& dialog) {
     auto* corner = new QComboBox(&dialog);
     corner->setObjectName("settings.bareCorner");
-    corner->addItems({"Nowhere", "Top left", "Top right", "Bottom left"}); // as BareInlay::Corner
+    corner->addItems({"Nowhere", "Top right", "Bottom left"}); // as BareInlay::Corner
     auto* share = new QSpinBox(&dialog);
     share->setObjectName("settings.bareShare");
     share->setRange(15, 40);
