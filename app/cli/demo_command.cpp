@@ -43,6 +43,7 @@ void showInWindow(const Demo& demo, const DemoTold& told, const std::string& lan
     for (const auto& [name, text] : told) words.insert(words.end(), {"--" + name, text});
     if (!language.empty()) words.insert(words.end(), {"--language", language});
     std::vector<char*> argv;
+    argv.reserve(words.size() + 1);
     for (std::string& word : words) argv.push_back(word.data());
     argv.push_back(nullptr);
     Session::releaseSignals();

@@ -24,7 +24,7 @@ public:
     [[nodiscard]] const MapView& view() const noexcept { return view_; }
     /// Metres over the sea of a sample, in rows along x.
     [[nodiscard]] float height(int column, int row) const noexcept {
-        return heights_[static_cast<std::size_t>(row * kColumns + column)];
+        return heights_[static_cast<std::size_t>(row) * kColumns + static_cast<std::size_t>(column)];
     }
     /// Metres on the device for a metre of height, of a view whose heights span so many metres.
     [[nodiscard]] static double perMetreOf(double relief, const MapView& view) noexcept;

@@ -18,9 +18,10 @@ namespace lumorph {
 namespace {
 
 constexpr glm::dvec2 kHalf{0.105, 0.075}; ///< of the water, metres
-constexpr double kSlides = 0.5;           ///< of what floats on a slope of 1, metres a second squared
+constexpr double kCarries = 0.5;          ///< of water that runs, metres a second squared for a slope of 1
+constexpr double kSlides = 0.04;          ///< down a wave, likewise: it mostly goes up and down
 constexpr double kDrag = 0.9;             ///< 1 / s
-constexpr double kHome = 0.25;            ///< by which it comes back to its place, 1 / s^2
+constexpr double kHome = 0.5;             ///< by which it comes back to its place, 1 / s^2
 constexpr double kBounce = 0.4;
 constexpr double kProbe = 0.008;   ///< half the distance over which a slope is read, metres
 constexpr double kNotch = 0.08;    ///< of the storm
@@ -60,7 +61,7 @@ WaterProgram::WaterProgram() : still_(waterScene()) {
         Float one{*item, {item->position.x, item->position.z}, {item->position.x, item->position.z}, {}, 0.0, 0.0};
         one.item.motion = {};
         one.radius = 0.5 * std::max(size.x, size.z);
-        one.lift = 0.25 * size.y;
+        one.lift = 0.12 * size.y;
         first_.push_back(std::move(one));
     }
     still_.items.erase(firstFloat, still_.items.end());
@@ -118,7 +119,8 @@ void WaterProgram::drift(const HeightItem& sea, double seconds, double step) {
         const std::array<float, 5> heights = around(sea, seconds, one.at);
         const glm::dvec2 wave = glm::dvec2(heights[1] - heights[2], heights[3] - heights[4]) / (2.0 * kProbe);
         // Down the waves, and with the water where it runs to the low side.
-        one.velocity += step * (kHome * (one.home - one.at) + kSlides * (slosh_.slope() - wave) - kDrag * one.velocity);
+        one.velocity +=
+            step * (kHome * (one.home - one.at) + kCarries * slosh_.slope() - kSlides * wave - kDrag * one.velocity);
         one.at += step * one.velocity;
         one.item.position = {glm::dvec3(one.at.x, heights[0] + slosh_.heightAt(one.at) + one.lift, one.at.y)};
         one.item.rotation = along(wave + slosh_.slope());
@@ -157,12 +159,12 @@ ShowContent WaterProgram::frame(const ShowMoment& moment) {
     drift(field, moment.seconds, std::clamp(moment.step, 0.0, kMostStep));
     ShowContent content;
     HeightGrid felt = gridOf(sea, moment.seconds);
+    std::size_t k = 0;
     for (int j = 0; j < felt.rows; ++j)
         for (int i = 0; i < felt.columns; ++i) {
             const glm::dvec2 share(static_cast<double>(i) / (felt.columns - 1),
                                    static_cast<double>(j) / (felt.rows - 1));
-            felt.heights[static_cast<std::size_t>(j * felt.columns + i)] +=
-                static_cast<float>(slosh_.heightAt(glm::mix(felt.min, felt.max, share)));
+            felt.heights[k++] += static_cast<float>(slosh_.heightAt(glm::mix(felt.min, felt.max, share)));
         }
     sea.rotation = along(slosh_.slope());
     const float level = sea.position.y;

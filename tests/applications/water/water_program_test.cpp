@@ -56,7 +56,7 @@ TEST_F(WaterProgramTest, BuoyAndCrateFloatOnTheWaterThatIsFelt) {
             const auto column = static_cast<int>(std::lround(share.x * (grid.columns - 1)));
             const auto row = static_cast<int>(std::lround(share.y * (grid.rows - 1)));
             const float water = grid.heights[static_cast<std::size_t>(row * grid.columns + column)];
-            ASSERT_NEAR(at.y, water + 0.005, 0.004) << name << " in frame " << k;
+            ASSERT_NEAR(at.y, water + 0.003, 0.003) << name << " in frame " << k;
         }
     }
     EXPECT_EQ(visit.content().following, Following::split);
