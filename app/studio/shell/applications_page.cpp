@@ -30,6 +30,7 @@ constexpr int kMargin = 32;
 constexpr int kGap = 20;
 constexpr int kLeastCard = 260, kMostCard = 380; ///< pixels wide
 constexpr int kMostColumns = 4;
+constexpr int kRoomForAll = 860; ///< pixels high, for a line of kept work and what Lumorph is
 constexpr int kTextHeight = 104;
 constexpr double kPictureShape = 200.0 / 320.0;
 
@@ -306,15 +307,18 @@ void ApplicationsPage::arrange() {
     const int wide = width() - 2 * kMargin - 20; // and a scroll bar
     // A line of kept work takes its height from the margins, so that the cards stay as large as they are.
     const int line = kept_ != nullptr && !kept_->isHidden() ? kept_->sizeHint().height() + kGap : 0;
-    const int margin = std::max(4, kMargin - line / 2);
+    about_->setVisible(line == 0 || height() >= kRoomForAll);
+    const int about = about_->isHidden() ? 0 : about_->sizeHint().height() + kGap;
+    const int margin = std::max(4, kMargin - (line + about) / 2);
     layout()->setContentsMargins(kMargin, kTop + margin, kMargin, margin);
-    const int high = height() - kTop - 2 * margin - 130 - about_->sizeHint().height() - line;
+    const int high = height() - kTop - 2 * margin - 130 - about - line;
     const auto count = static_cast<int>(cards_.size());
     int columns = 1, card = kLeastCard;
     for (int tried = 1; tried <= std::min(kMostColumns, count); ++tried) {
         const int rows = (count + tried - 1) / tried;
         const int byWidth = (wide - (tried - 1) * kGap) / tried;
-        const int byHeight = static_cast<int>(((high - (rows - 1) * kGap) / rows - kTextHeight) / kPictureShape);
+        const int picture = (high - (rows - 1) * kGap) / rows - kTextHeight;
+        const int byHeight = static_cast<int>(picture / kPictureShape);
         const int fits = std::min({byWidth, byHeight, kMostCard});
         if (fits > card || (card == kLeastCard && byWidth >= kLeastCard)) {
             columns = tried;

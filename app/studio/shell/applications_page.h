@@ -5,6 +5,7 @@
 #include <vector>
 
 #include <QAbstractButton>
+#include <QMouseEvent>
 #include <QScrollArea>
 
 #include "app/studio/shell/overlay.h"
