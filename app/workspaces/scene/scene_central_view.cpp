@@ -172,7 +172,7 @@ void SceneCentralView::Data::addDevice() {
     });
 }
 
-/// A hand's share of what one sees: beside light that fills the view nobody would notice that the device moves.
+/// A small view of the device without light: in the large one projected light hides that the shape changes.
 void SceneCentralView::Data::addInlay() {
     ShowView bare = viewOf(ShowView::Kind::lab);
     bare.lit = false;
