@@ -1,6 +1,7 @@
 #include <array>
 #include <cstdio>
 #include <memory>
+#include <optional>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -20,7 +21,8 @@ namespace {
 
 struct PlacementArguments {
     std::string rig, project;
-    std::string lens, within;
+    std::string lens, within, blur;
+    std::optional<double> aperture, focus; ///< millimetres, metres
     double wanted = LightWish{}.pixelsPerMillimetre;
     double incidence = LightWish{}.mostIncidence.inDegrees();
     bool json = false;
@@ -71,11 +73,31 @@ std::array<glm::dvec3, 2> boundsOf(const std::string& text) {
     return {glm::dvec3(numbers[0], numbers[1], numbers[2]), glm::dvec3(numbers[3], numbers[4], numbers[5])};
 }
 
+/// What is known of a projector's lens, with what the command line says better.
+LensFocus focusOf(const LensFocus& known, const PlacementArguments& arguments) {
+    LensFocus focus = known;
+    if (!arguments.blur.empty()) {
+        const std::vector<double> numbers = numbersOf(arguments.blur, ",:");
+        std::vector<MeasuredBlur> measured;
+        for (std::size_t k = 0; k + 1 < numbers.size(); k += 2) measured.push_back({numbers[k], 1e-3 * numbers[k + 1]});
+        if (numbers.empty() || numbers.size() % 2 != 0)
+            throw InvalidInput("--blur " + arguments.blur, "it is no list of distances and widths",
+                               "write metres and millimetres, such as 1.6:2.1,1.9:0.4,2.3:2.8");
+        focus = lensFocusOf(measured);
+    }
+    if (arguments.aperture) focus.aperture = 1e-3 * *arguments.aperture;
+    if (arguments.focus) focus.focusDistance = *arguments.focus;
+    return focus;
+}
+
 nlohmann::json jsonOf(const LightMap& map) {
-    return {{"lit", map.lit},
-            {"pixelsPerMillimetre", map.pixelsPerMillimetre},
-            {"incidence", map.incidence.inDegrees()},
-            {"worth", map.worth}};
+    nlohmann::json json{{"lit", map.lit},
+                        {"pixelsPerMillimetre", map.pixelsPerMillimetre},
+                        {"incidence", map.incidence.inDegrees()},
+                        {"worth", map.worth},
+                        {"bestFocus", map.bestFocus}};
+    if (map.blurKnown) json["blurMillimetres"] = 1e3 * map.blur;
+    return json;
 }
 
 void printLight(const char* title, const LightMap& map) {
@@ -83,6 +105,9 @@ void printLight(const char* title, const LightMap& map) {
                 "  pixels          %.2f a millimetre at least on 95 %% of what is lit\n"
                 "  incidence       %.0f degrees at most there\n",
                 title, 100.0 * map.lit, map.pixelsPerMillimetre, map.incidence.inDegrees());
+    if (map.blurKnown) std::printf("  blur            %.2f mm at most there\n", 1e3 * map.blur);
+    for (const double distance : map.bestFocus)
+        if (distance > 0.0) std::printf("  best focus      %.3f m before the lens\n", distance);
 }
 
 void plan(const PlacementArguments& arguments, const Session& session) {
@@ -92,13 +117,19 @@ void plan(const PlacementArguments& arguments, const Session& session) {
     const Rig rig = readRig(arguments.rig);
     const Installation room =
         arguments.project.empty() ? defaultInstallation() : readProject(projectFile(arguments.project)).installation;
-    const LightWish wish{arguments.wanted, Angle::degrees(arguments.incidence)};
+    LightWish wish;
+    wish.pixelsPerMillimetre = arguments.wanted;
+    wish.mostIncidence = Angle::degrees(arguments.incidence);
     const Progress progress = session.progress();
     const LitDevice device(rig, room.worldFromDevice, 8, 1000, progress.part(0.0, 0.2));
     std::vector<CalibratedCamera> hanging;
-    for (const InstalledProjector& projector : room.projectors)
-        if (projector.enabled) hanging.push_back(projector.camera);
-    const LightMap now = device.lightOf(hanging, wish);
+    std::vector<LensFocus> focus;
+    for (const InstalledProjector& projector : room.projectors) {
+        if (!projector.enabled) continue;
+        hanging.push_back(projector.camera);
+        focus.push_back(focusOf(projector.focus, arguments));
+    }
+    const LightMap now = device.lightOf(hanging, wish, focus);
     std::vector<LightMap> seen; // by each camera: a tracker loses a device that it does not see
     for (const InstalledCamera& camera : room.cameras) seen.push_back(device.lightOf({&camera.camera, 1}, wish));
     std::optional<ProjectorPlace> best;
@@ -107,6 +138,12 @@ void plan(const PlacementArguments& arguments, const Session& session) {
         best = bestProjectorPlace(device, *lens, low, high,
                                   arguments.project.empty() ? std::span<const CalibratedCamera>() : hanging, wish,
                                   progress.part(0.2, 1.0));
+    if (best && best->light.bestFocus.back() > 0.0) { // whoever hangs it focuses it
+        if (arguments.project.empty()) hanging.clear(), focus.clear();
+        hanging.push_back(best->camera);
+        focus.push_back({focusOf({}, arguments).aperture, best->light.bestFocus.back()});
+        best->light = device.lightOf(hanging, wish, focus);
+    }
     Session::endProgress();
     if (arguments.json) {
         nlohmann::json all{{"now", jsonOf(now)}, {"cameras", nlohmann::json::array()}};
@@ -164,6 +201,15 @@ void addPlacementCommand(CLI::App& group, Session& session) {
     command->add_option("--incidence", arguments->incidence, "Degrees beyond which light counts as none")
         ->check(numberBetween(1.0, 89.0))
         ->capture_default_str();
+    command
+        ->add_option("--aperture", arguments->aperture,
+                     "Millimetres that the opening of the projectors' lenses is wide: focal length / f-number")
+        ->check(numberBetween(0.0, 500.0));
+    command->add_option("--focus", arguments->focus, "Metres before their lenses at which their picture is sharp")
+        ->check(numberBetween(0.05, 100.0));
+    command->add_option("--blur", arguments->blur,
+                        "Instead, the width of a pixel's light on paper as it was measured: metres:millimetres, at "
+                        "three distances or more");
     command->add_flag("--json", arguments->json, "Print one JSON value");
     command->callback([arguments, &session] { plan(*arguments, session); });
 }

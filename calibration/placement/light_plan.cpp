@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <optional>
 #include <random>
@@ -79,6 +80,7 @@ double pixelsPerMillimetreAt(const CalibratedCamera& projector, const Spot& spot
 struct Ray {
     double pixelsPerMillimetre = 0.0;
     double incidence = 0.0; ///< radians
+    double depth = 0.0;     ///< metres along the projector's axis
 };
 
 std::optional<Ray> rayTo(const Spot& spot, const CalibratedCamera& projector, const Lab& shadows,
@@ -88,8 +90,22 @@ std::optional<Ray> rayTo(const Spot& spot, const CalibratedCamera& projector, co
     if (!(cosine > std::cos(wish.mostIncidence.inRadians()))) return std::nullopt;
     const auto pixel = pixelOf(projector, spot.point);
     if (!pixel || !isInPicture(projector, *pixel) || !shadows.sees(spot.point, spot.normal, lens)) return std::nullopt;
-    return Ray{pixelsPerMillimetreAt(projector, spot, *pixel), std::acos(std::min(1.0, cosine))};
+    return Ray{pixelsPerMillimetreAt(projector, spot, *pixel), std::acos(std::min(1.0, cosine)),
+               (projector.cameraFromWorld * glm::dvec4(spot.point, 1.0)).z};
 }
+
+double blurAcross(const LensFocus& focus, double depth) {
+    return focus.aperture * std::abs(depth / focus.focusDistance - 1.0);
+}
+
+/// Depths that something reaches.
+struct DepthSpan {
+    double near = std::numeric_limits<double>::infinity(), far = 0.0;
+    void include(const DepthSpan& other) {
+        near = std::min(near, other.near);
+        far = std::max(far, other.far);
+    }
+};
 
 /// The triangles that look up at rest and lie open: not hidden under others, as the folds of a skirt are, nor the
 /// bottoms of slits, which only light from straight above finds.
@@ -216,10 +232,12 @@ std::vector<glm::vec3> LitDevice::corners() const {
     return corners;
 }
 
-LightMap LitDevice::lightOf(std::span<const CalibratedCamera> projectors, const LightWish& wish) const {
+LightMap LitDevice::lightOf(std::span<const CalibratedCamera> projectors, const LightWish& wish,
+                            std::span<const LensFocus> focus) const {
     LightMap map;
     map.places = data_->places;
     std::vector<double> worth(map.places.size(), 0.0);
+    std::vector<DepthSpan> depths(map.places.size() * projectors.size());
     tbb::parallel_for(std::size_t{0}, map.places.size(), [&](std::size_t k) {
         LightAt& at = map.places[k];
         double least = 0.0;
@@ -227,11 +245,18 @@ LightMap LitDevice::lightOf(std::span<const CalibratedCamera> projectors, const 
         int lit = 0;
         for (std::size_t s = 0; s < data_->spots.size(); ++s) {
             std::optional<Ray> best;
-            for (const CalibratedCamera& projector : projectors) {
-                const auto ray = rayTo(data_->spots[s][k], projector, *data_->labs[s], wish);
-                if (ray && (!best || ray->pixelsPerMillimetre > best->pixelsPerMillimetre)) best = ray;
+            std::size_t from = 0;
+            for (std::size_t p = 0; p < projectors.size(); ++p) {
+                const auto ray = rayTo(data_->spots[s][k], projectors[p], *data_->labs[s], wish);
+                if (!ray) continue;
+                depths[k * projectors.size() + p].include({ray->depth, ray->depth});
+                if (best && ray->pixelsPerMillimetre <= best->pixelsPerMillimetre) continue;
+                best = ray;
+                from = p;
             }
             if (!best) continue;
+            if (from < focus.size())
+                at.blur = std::max(at.blur, blurAcross(focus[from], best->depth) / std::cos(best->incidence));
             least = lit == 0 ? best->pixelsPerMillimetre : std::min(least, best->pixelsPerMillimetre);
             slanted = std::max(slanted, best->incidence);
             worth[k] += std::min(1.0, best->pixelsPerMillimetre / wish.pixelsPerMillimetre);
@@ -244,6 +269,7 @@ LightMap LitDevice::lightOf(std::span<const CalibratedCamera> projectors, const 
     double area = 0.0;
     std::vector<std::pair<double, double>> fine;
     std::vector<std::pair<double, double>> slanted;
+    std::vector<std::pair<double, double>> blurred;
     for (std::size_t k = 0; k < map.places.size(); ++k) {
         const LightAt& at = map.places[k];
         area += at.area;
@@ -252,6 +278,7 @@ LightMap LitDevice::lightOf(std::span<const CalibratedCamera> projectors, const 
         if (!(at.lit > 0.0)) continue;
         fine.emplace_back(at.pixelsPerMillimetre, at.area);
         slanted.emplace_back(at.incidence.inRadians(), at.area);
+        blurred.emplace_back(at.blur, at.area);
     }
     map.lit /= area;
     map.worth /= area;
@@ -259,7 +286,51 @@ LightMap LitDevice::lightOf(std::span<const CalibratedCamera> projectors, const 
     std::ranges::sort(slanted, std::greater<>());
     map.pixelsPerMillimetre = withoutTheWorst(fine);
     map.incidence = Angle::radians(withoutTheWorst(slanted));
+    std::ranges::sort(blurred, std::greater<>());
+    map.blur = withoutTheWorst(blurred);
+    map.blurKnown = std::ranges::any_of(focus, [](const LensFocus& lens) { return lens.aperture > 0.0; });
+    for (std::size_t p = 0; p < projectors.size(); ++p) {
+        DepthSpan lit;
+        for (std::size_t k = 0; k < map.places.size(); ++k) lit.include(depths[k * projectors.size() + p]);
+        // Of |depth / focus - 1| the largest is least where nearest and farthest are as blurred as each other.
+        map.bestFocus.push_back(lit.far > 0.0 ? 0.5 * (lit.near + lit.far) : 0.0);
+    }
     return map;
+}
+
+LensFocus lensFocusOf(std::span<const MeasuredBlur> measured) {
+    const auto refuse = [](const char* why) {
+        throw InvalidInput("Measured blur", why, "give at least three distances, before and behind the sharpest one");
+    };
+    if (measured.size() < 3) refuse("three distances are the least that tell a lens");
+    for (const MeasuredBlur& at : measured)
+        if (!(at.distance > 0.0) || !(at.blur >= 0.0) || !std::isfinite(at.distance) || !std::isfinite(at.blur))
+            refuse("a distance must be above 0 and a blur no less than 0");
+    // Before the focus the disk shrinks along a straight line, behind it it grows along the same one: for every way to
+    // part the distances, a line by least squares.
+    std::vector<MeasuredBlur> sorted(measured.begin(), measured.end());
+    std::ranges::sort(sorted, {}, &MeasuredBlur::distance);
+    LensFocus best;
+    double least = std::numeric_limits<double>::infinity();
+    for (std::size_t before = 0; before <= sorted.size(); ++before) {
+        double n = 0.0, x = 0.0, y = 0.0, xx = 0.0, xy = 0.0;
+        for (std::size_t k = 0; k < sorted.size(); ++k) {
+            const double signedBlur = k < before ? -sorted[k].blur : sorted[k].blur;
+            n += 1.0, x += sorted[k].distance, y += signedBlur;
+            xx += sorted[k].distance * sorted[k].distance, xy += sorted[k].distance * signedBlur;
+        }
+        const double slope = (n * xy - x * y) / (n * xx - x * x);
+        const double aperture = -(y - slope * x) / n; // where the line meets distance 0
+        if (!(slope > 0.0) || !(aperture > 0.0)) continue;
+        double error = 0.0;
+        for (const MeasuredBlur& at : sorted) {
+            const double off = blurAcross({aperture, aperture / slope}, at.distance) - at.blur;
+            error += off * off;
+        }
+        if (error < least) least = error, best = {aperture, aperture / slope};
+    }
+    if (!(best.aperture > 0.0)) refuse("it does not change with the distance as a lens has it");
+    return best;
 }
 
 CalibratedCamera aimedProjector(const ProjectorLens& lens, const glm::dvec3& place, std::span<const glm::vec3> points,

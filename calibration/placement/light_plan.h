@@ -12,6 +12,7 @@
 #include "core/base/units.h"
 #include "core/geometry/calibrated_camera.h"
 #include "core/rig/rig.h"
+#include "core/scene/installation.h"
 
 namespace lumorph {
 
@@ -24,21 +25,30 @@ struct LightAt {
     /// where none is.
     double pixelsPerMillimetre = 0.0;
     Angle incidence; ///< between light and surface normal, in the worst state that is lit
+    /// What a point of the picture becomes along the direction in which it is spread most, in the worst state that is
+    /// lit, metres.
+    double blur = 0.0;
 };
 
 /// Light on a whole device.
 struct LightMap {
+    bool blurKnown = false; ///< the aperture of one of the lenses was given
     std::vector<LightAt> places;
     double lit = 0.0;                 ///< share of area and states
     double pixelsPerMillimetre = 0.0; ///< that 95 % of the area that is ever lit have at least
     Angle incidence;                  ///< that 95 % of it have at most
-    double worth = 0.0;               ///< what a plan makes as large as it can; see LightWish
+    double blur = 0.0;                ///< metres that 95 % of it have at most
+    /// Of each projector: the distance at which it is focused best for all that it lights over all states, metres; 0
+    /// where it lights nothing.
+    std::vector<double> bestFocus;
+    double worth = 0.0; ///< what a plan makes as large as it can; see LightWish
 };
 
 /// What is expected of light.
 struct LightWish {
     double pixelsPerMillimetre = 2.0;           ///< more is worth no more
     Angle mostIncidence = Angle::degrees(70.0); ///< beyond it light is spread so thinly that it counts as none
+    double mostBlur = 0.002;                    ///< metres; a map's worst colour
 };
 
 /// A device as light meets it: the side that looks up at rest and lies open, in a number of joint states, which also
@@ -57,7 +67,9 @@ public:
     LitDevice& operator=(LitDevice&&) noexcept;
 
     /// Light and sight go the same way: of a camera it tells how the camera sees the device, in its own pixels.
-    [[nodiscard]] LightMap lightOf(std::span<const CalibratedCamera> projectors, const LightWish& wish = {}) const;
+    /// `focus`: of each projector; of those that have none nothing is blurred.
+    [[nodiscard]] LightMap lightOf(std::span<const CalibratedCamera> projectors, const LightWish& wish = {},
+                                   std::span<const LensFocus> focus = {}) const;
     /// The corners of the box that holds it in every state looked at, world metres.
     [[nodiscard]] std::vector<glm::vec3> corners() const;
     [[nodiscard]] std::size_t states() const noexcept;
@@ -68,6 +80,16 @@ private:
     struct Data;
     std::unique_ptr<Data> data_;
 };
+
+/// The blur of a point on a surface across a projector's axis, as it was measured.
+struct MeasuredBlur {
+    double distance = 0.0; ///< metres along the axis
+    double blur = 0.0;     ///< metres across
+};
+
+/// The lens that blurs so, by least squares: `aperture` and `focusDistance` of LensFocus. Throws InvalidInput for fewer
+/// than three distances, figures that are none, or blur that does not change with the distance.
+[[nodiscard]] LensFocus lensFocusOf(std::span<const MeasuredBlur> measured);
 
 /// A projector's lens as data sheets describe it.
 struct ProjectorLens {

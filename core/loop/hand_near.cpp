@@ -10,6 +10,13 @@
 #include "core/loop/tracked_room.h"
 
 namespace lumorph {
+namespace {
+
+constexpr float kFinger = 0.012F, kArm = 0.045F, kHand = 0.09F; ///< radii, metres
+constexpr float kArmLength = 0.35F;                             ///< metres behind the body
+constexpr float kLeastTip = 0.02F;                              ///< metres from tip to body that tell a direction
+
+} // namespace
 
 std::optional<double> handDistance(const PoseBoard& board, const Box& box, const glm::mat4& worldFromDevice,
                                    Microseconds now, const Installation& installation) {
@@ -30,6 +37,14 @@ std::optional<double> handDistance(const PoseBoard& board, const Box& box, const
         look(inRoom(installation, entry.role, *hand));
     }
     return nearest;
+}
+
+std::vector<Capsule> handShape(const Installation& installation, const Pose& tracked) {
+    const glm::vec3 body(bodyInRoom(installation, tracked).position);
+    const glm::vec3 tip(inRoom(installation, PoseRole::pointer, tracked).position);
+    const float length = glm::distance(tip, body);
+    if (length < kLeastTip) return {{body, body, kHand}};
+    return {{tip, body, kFinger}, {body, body + kArmLength / length * (body - tip), kArm}};
 }
 
 } // namespace lumorph

@@ -1,9 +1,11 @@
 #pragma once
 
 #include <optional>
+#include <vector>
 
 #include <glm/mat4x4.hpp>
 
+#include "core/geometry/capsule.h"
 #include "core/geometry/triangle_mesh.h"
 #include "core/loop/pose_stream.h"
 #include "core/scene/installation.h"
@@ -18,5 +20,10 @@ namespace lumorph {
 [[nodiscard]] std::optional<double> handDistance(const PoseBoard& board, const Box& box,
                                                  const glm::mat4& worldFromDevice, Microseconds now,
                                                  const Installation& installation = {});
+
+/// The room that a tracked hand takes, world metres, from what its tracker says of its body. Where the tip was
+/// measured: a finger (or stick) from the tip to the body, and behind the body hand and forearm in the same direction.
+/// Else a ball that a hand with its fingers hardly leaves; nothing tells then where the arm is.
+[[nodiscard]] std::vector<Capsule> handShape(const Installation& installation, const Pose& tracked);
 
 } // namespace lumorph

@@ -11,6 +11,7 @@
 
 #include "core/base/clock.h"
 #include "core/base/units.h"
+#include "core/geometry/capsule.h"
 #include "core/loop/match_field.h"
 #include "core/loop/match_target.h"
 #include "core/loop/show_caption.h"
@@ -97,6 +98,7 @@ struct MatchFrame {
     double sceneSeconds = 0.0;
     glm::mat4 worldFromDevice{1.0F};   ///< predicted for the moment at which the frame is seen
     std::optional<glm::vec3> eye;      ///< of the viewer who is followed, predicted likewise; world metres
+    std::vector<Capsule> hands;        ///< that are tracked, with their arms, predicted likewise; world metres
     std::string viewer;                ///< his name; empty for the scene's own eye
     bool handingOver = false;          ///< the eye glides from one viewer to the next
     std::vector<double> viewStrokes;   ///< what view dependence asks for; empty while it is off or servos rest

@@ -25,6 +25,7 @@ ShowFrame ShowStage::frame(const MatchFrame& match) {
     frame.devicePositions = match.devicePositions;
     frame.worldFromDevice = match.worldFromDevice;
     frame.eye = match.eye;
+    frame.hands = match.hands;
     return frame;
 }
 

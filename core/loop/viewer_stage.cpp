@@ -6,6 +6,7 @@
 
 #include <glm/gtc/matrix_transform.hpp>
 
+#include "core/loop/hand_near.h"
 #include "core/loop/tracked_room.h"
 
 namespace lumorph {
@@ -34,13 +35,19 @@ private:
     void take(const PoseBoard::Entry& entry, Microseconds then) {
         headsExpected |= entry.role == PoseRole::head;
         const std::optional<Pose> seen = entry.stream->at(then, frame_.time);
-        if (!seen || entry.role == PoseRole::pointer) return;
+        if (!seen) return;
+        if (entry.role == PoseRole::pointer) return addHand(*seen);
         tracked = true;
         const Pose pose = inRoom(installation_, entry.role, *seen);
         if (const std::optional<PoseSample> sample = entry.stream->latest()) oldest_ = std::min(oldest_, sample->time);
         if (entry.role == PoseRole::head)
             heads.push_back({entry.name, pose.position + pose.rotation * glm::dvec3(installation_.eyeFromHead)});
         if (entry.role == PoseRole::device) frame_.worldFromDevice = glm::mat4(matrixOf(pose));
+    }
+
+    void addHand(const Pose& seen) {
+        const std::vector<Capsule> hand = handShape(installation_, seen);
+        frame_.hands.insert(frame_.hands.end(), hand.begin(), hand.end());
     }
 
     const Installation& installation_;
@@ -74,13 +81,12 @@ void ViewerStage::look(const MatchWish& wish, double sinceLast, MatchFrame& fram
     } else if (!outlook.headsExpected && installation.viewer != ViewerChoice::none) {
         frame.eye = installation.eye;
     }
-    moves_ = outlook.tracked;
+    moves_ = outlook.tracked || !frame.hands.empty();
 }
 
 bool anyTracked(const PoseBoard& board, Microseconds now) {
-    return std::ranges::any_of(board.entries(), [&](const PoseBoard::Entry& entry) {
-        return entry.role != PoseRole::pointer && entry.stream->at(now, now).has_value();
-    });
+    return std::ranges::any_of(board.entries(),
+                               [&](const PoseBoard::Entry& entry) { return entry.stream->at(now, now).has_value(); });
 }
 
 } // namespace lumorph

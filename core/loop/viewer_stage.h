@@ -9,7 +9,7 @@ namespace lumorph {
 /// First stage of a frame with a scene: where device and viewer are when its light is seen.
 class ViewerStage {
 public:
-    /// Writes `worldFromDevice`, eye and viewer into a frame that began at its `time`.
+    /// Writes `worldFromDevice`, eye, viewer and hands into a frame that began at its `time`.
     void look(const MatchWish& wish, double sinceLast, MatchFrame& frame);
     /// Whether they will be elsewhere in the next frame with the same wish.
     [[nodiscard]] bool moves() const noexcept { return moves_; }

@@ -200,7 +200,7 @@ bool SpatialRenderer::Data::drawProjectors(const EyeViews& views, bool shared) {
         if (target->region.empty()) continue;
         if (!lookUp([&] { projectorPass.drawDepth(*target, *frame, device, views, shared); })) return false;
     }
-    const auto weigh = [&] { projectorPass.drawWeights(targets, device, frame->installation->compensation); };
+    const auto weigh = [&] { projectorPass.drawWeights(targets, *frame, device); };
     if (shared && !granted(sharingProblem, "projectors do not share, and are too bright where they meet", weigh))
         return false;
     for (ProjectorTarget* target : targets) {

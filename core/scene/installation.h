@@ -30,6 +30,14 @@ struct Origin {
     }
 };
 
+/// How sharp a projector's lens is at which distance. As a thin lens has it, a point of its picture is on a surface
+/// across its axis, `distance` away, a disk of `aperture` * |distance / focusDistance - 1| metres.
+struct LensFocus {
+    double aperture = 0.0;      ///< metres across, focal length / f-number; 0: not known
+    double focusDistance = 2.0; ///< metres along the axis
+    bool operator==(const LensFocus&) const = default;
+};
+
 /// A projector and what is known of its light. Full white on a white diffuse surface that it meets head on at
 /// `referenceDistance` has the radiance `peak`, where 1 is white in the eye pass; so `peak` is the headroom for
 /// slanting and distant places.
@@ -37,6 +45,7 @@ struct InstalledProjector {
     std::string name = "Projector";
     bool enabled = true;
     CalibratedCamera camera;
+    LensFocus focus;
     double referenceDistance = 2.0; ///< metres
     double peak = 3.0;
     glm::vec3 gain{1.0F};  ///< relative response of red, green, blue; 1 until measured

@@ -208,6 +208,8 @@ template <typename V, Is<InstalledProjector> T> void fields(V& v, T& projector) 
     v.text("name", projector.name);
     v.flag("enabled", projector.enabled);
     v.whole("camera", projector.camera);
+    v.number("aperture", projector.focus.aperture, {0.0, 0.5});
+    v.number("focusDistance", projector.focus.focusDistance, {0.01, kFar});
     v.number("referenceDistance", projector.referenceDistance, {0.01, kFar});
     v.number("peak", projector.peak, {0.01, 1000.0});
     v.vector("gain", projector.gain, {0.001, 1000.0});

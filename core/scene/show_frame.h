@@ -8,6 +8,7 @@
 #include <glm/mat4x4.hpp>
 #include <glm/vec3.hpp>
 
+#include "core/geometry/capsule.h"
 #include "core/rig/rig.h"
 #include "core/scene/installation.h"
 #include "core/scene/posed_scene.h"
@@ -26,6 +27,7 @@ struct ShowFrame {
     std::shared_ptr<const std::vector<glm::vec3>> devicePositions; ///< of the estimated state, device metres
     glm::mat4 worldFromDevice{1.0F};
     std::optional<glm::vec3> eye; ///< of the viewer who is followed, world metres; none: view-independent
+    std::vector<Capsule> hands;   ///< tracked hands and arms, in the world: what keeps light from the device
 };
 
 /// Corners, in the world, of a box around what is seen of a surface; none: nothing is, as of what only the servos

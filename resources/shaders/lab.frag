@@ -1,5 +1,5 @@
 // A projector's light on device and table, which are diffuse, seen by any observer. Pieces before: version.glsl,
-// camera.glsl, physical_normal.glsl, projector_light.glsl, projector_sight.glsl, where RESPONSE is defined
+// camera.glsl, physical_normal.glsl, projector_light.glsl, projector_sight.glsl, hands.glsl, where RESPONSE is defined
 // projector_response.glsl. In: what the projector sends out and, without RESPONSE, its gamma (0: sRGB), and the colour of
 // the bare surface. Out: linear radiance, to be added up; white where the
 // projector reaches when MASK is defined.
@@ -39,9 +39,10 @@ void main() {
     vec3 normal = faceTowards(worldPosition, viewerPosition);
     Sight sight = sightOf(worldPosition, normal);
     vec3 light = fullLight(worldPosition, normal);
+    float reached = sight.reached * step(0.0, clearOfHands(projectorPosition, worldPosition));
 #ifdef MASK
-    color = vec4(sight.reached > 0.5 && light.g > 0.0 ? 1.0 : 0.0);
+    color = vec4(reached > 0.5 && light.g > 0.0 ? 1.0 : 0.0);
 #else
-    color = vec4(surfaceAlbedo * light * sight.reached * lightBetween(sight.uv), 1.0);
+    color = vec4(surfaceAlbedo * light * reached * lightBetween(sight.uv), 1.0);
 #endif
 }

@@ -421,5 +421,34 @@ TEST(LabPlacement, TakesAProjectorByItsName) {
     EXPECT_NE(unknown.err.find("Optoma GT1080HDR"), std::string::npos) << unknown.err;
 }
 
+TEST(LabPlacement, BlurFollowsFromTheApertureOrFromWhatWasMeasured) {
+    const std::string tablet = cutTabletFile();
+    const auto light = [&](std::vector<std::string> more) {
+        std::vector<std::string> words{"lab", "placement", tablet, "--json"};
+        words.insert(words.end(), more.begin(), more.end());
+        return lumorph(words).json()["now"];
+    };
+    const auto plain = light({});
+    EXPECT_FALSE(plain.contains("blurMillimetres")) << "nobody said how wide the lens is";
+    const double best = plain["bestFocus"].at(0);
+    EXPECT_GT(best, 0.5);
+    const auto sharp = light({"--aperture", "8", "--focus", std::to_string(best)});
+    const auto before = light({"--aperture", "8", "--focus", std::to_string(0.8 * best)});
+    const double blur = before["blurMillimetres"];
+    EXPECT_LT(sharp["blurMillimetres"].get<double>(), 0.3 * blur);
+    EXPECT_GT(blur, 8.0 * 0.2); // |1 / 0.8 - 1| in the middle, more where light is slanting
+    // The same lens by what it was seen to do.
+    const double focus = 0.8 * best;
+    std::string seen;
+    for (const double at : {0.6 * best, 0.75 * best, 0.9 * best, best})
+        seen += std::to_string(at) + ":" + std::to_string(8.0 * std::abs(at / focus - 1.0)) + ",";
+    EXPECT_NEAR(light({"--blur", seen})["blurMillimetres"].get<double>(), blur, 0.01 * blur);
+    for (const char* wrong : {"1.6", "wide", "1:0.1,2:0.1", "1:1,1:1,1:1"}) {
+        const Outcome refused = lumorph({"lab", "placement", tablet, "--blur", wrong});
+        EXPECT_EQ(refused.exitCode, 2) << wrong;
+        EXPECT_NE(refused.err.find("lur"), std::string::npos) << refused.err;
+    }
+}
+
 } // namespace
 } // namespace lumorph::test

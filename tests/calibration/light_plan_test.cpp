@@ -1,6 +1,7 @@
 #include "calibration/placement/light_plan.h"
 
 #include <cmath>
+#include <random>
 
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
@@ -211,6 +212,66 @@ TEST(LightPlan, EachTriangleThatLooksUpIsCountedWithOnePlace) {
         if (place >= 0) area.at(static_cast<std::size_t>(place)) += 0.5 * glm::length(normal);
     }
     for (std::size_t k = 0; k < area.size(); ++k) EXPECT_NEAR(area[k], map.places[k].area, 1e-9) << "place " << k;
+}
+
+TEST(LightPlan, BlurIsThatOfAThinLensAndTheBestFocusLiesBetweenNearestAndFarthest) {
+    const Rig rig = stepRig(); // tops at 2 cm, of the right half at 10 cm too
+    const LitDevice device(rig, glm::mat4(1.0F), 0);
+    const std::vector above{cameraLookingAt({0.0, 1.02, 0.0}, {0.0, 0.0, 0.0}, {1280, 800}, 1500.0)};
+    EXPECT_FALSE(device.lightOf(above).blurKnown);
+    const std::vector<LensFocus> focus{{0.01, 0.8}};
+    const LightMap map = device.lightOf(above, {}, focus);
+    ASSERT_TRUE(map.blurKnown);
+    for (const LightAt& at : map.places) {
+        const double cosine = 1.0 / std::hypot(1.0, std::hypot(at.place.x, at.place.z));
+        EXPECT_NEAR(at.blur, 0.01 * (1.0 / 0.8 - 1.0) / cosine, 2e-6) << "at rest it is farther from the focus";
+    }
+    EXPECT_NEAR(map.blur, 0.0025, 2e-5);
+    ASSERT_EQ(map.bestFocus.size(), 1U);
+    EXPECT_NEAR(map.bestFocus[0], 0.96, 1e-6) << "0.92 m to what rises, 1 m to the rest";
+    const auto worst = [&](double distance) {
+        return std::max(std::abs(0.92 / distance - 1.0), std::abs(1.0 / distance - 1.0));
+    };
+    for (double distance = 0.8; distance < 1.2; distance += 0.001)
+        EXPECT_GE(worst(distance), worst(map.bestFocus[0]) - 1e-9) << distance;
+
+    // Of two projectors each has a focus of its own, and one that lights nothing has none.
+    const std::vector two{above[0], cameraLookingAt({0.0, 1.0, 5.0}, {0.0, 1.0, 9.0}, {64, 64}, 64.0)};
+    const LightMap both = device.lightOf(two, {}, std::vector<LensFocus>{{0.0, 1.0}, {0.02, 1.0}});
+    EXPECT_NEAR(both.bestFocus.at(0), 0.96, 1e-6);
+    EXPECT_EQ(both.bestFocus.at(1), 0.0);
+    EXPECT_EQ(both.blur, 0.0) << "the one whose aperture is known lights nothing";
+}
+
+TEST(LightPlan, MeasuredBlurTellsApertureAndFocus) {
+    const auto seen = [](const LensFocus& lens, const std::vector<double>& distances, double noise, unsigned seed) {
+        std::mt19937 numbers(seed);
+        std::normal_distribution<double> error(0.0, noise);
+        std::vector<MeasuredBlur> measured;
+        for (const double at : distances)
+            measured.push_back(
+                {at, std::max(0.0, lens.aperture * std::abs(at - lens.focusDistance) / lens.focusDistance +
+                                       error(numbers))});
+        return measured;
+    };
+    for (const LensFocus& truth : {LensFocus{0.009, 1.83}, LensFocus{0.02, 0.6}, LensFocus{0.004, 3.0}}) {
+        const double f = truth.focusDistance;
+        for (const auto& shares :
+             {std::vector{0.7, 0.9, 1.2, 1.4}, std::vector{1.1, 1.2, 1.5}, std::vector{0.6, 0.7, 0.8}}) {
+            std::vector<double> distances;
+            for (const double share : shares) distances.push_back(share * f);
+            const LensFocus found = lensFocusOf(seen(truth, distances, 0.0, 1));
+            EXPECT_NEAR(found.aperture, truth.aperture, 1e-9);
+            EXPECT_NEAR(found.focusDistance, f, 1e-9) << "also where it was looked at from one side alone";
+        }
+        const LensFocus noisy = lensFocusOf(seen(truth, {0.6 * f, 0.75 * f, 0.9 * f, 1.1 * f, 1.3 * f}, 1e-4, 77));
+        EXPECT_NEAR(noisy.focusDistance, f, 0.03 * f);
+        EXPECT_NEAR(noisy.aperture, truth.aperture, 0.1 * truth.aperture);
+    }
+    EXPECT_THROW((void)lensFocusOf(std::vector<MeasuredBlur>{{1.0, 0.001}, {2.0, 0.001}}), InvalidInput);
+    EXPECT_THROW((void)lensFocusOf(std::vector<MeasuredBlur>{{1.0, 0.001}, {1.0, 0.001}, {1.0, 0.001}}), InvalidInput);
+    EXPECT_THROW((void)lensFocusOf(std::vector<MeasuredBlur>{{1.0, 0.001}, {NAN, 0.001}, {2.0, 0.001}}), InvalidInput);
+    EXPECT_THROW((void)lensFocusOf(std::vector<MeasuredBlur>{{1.0, 0.001}, {1.5, -0.1}, {2.0, 0.001}}), InvalidInput);
 }
 
 TEST(ProjectorModel, NamedLensesAreAsTheirDataSheetsSay) {

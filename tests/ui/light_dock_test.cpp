@@ -78,6 +78,33 @@ TEST(LightDock, MapFollowsTheRoomAndTheBestPlaceIsHungByOneStep) {
     window.studio().document.setInstallation(before);
     ASSERT_TRUE(eventually(isAsBefore, std::chrono::seconds(30)));
 
+    // Without its aperture nobody knows how sharp light is; measured blur tells it. A focus is one step of undo.
+    auto* shown = window.find<QComboBox>("rig.light.shown");
+    shown->setCurrentIndex(3);
+    EXPECT_TRUE(window.text("rig.light.focus.note").startsWith("For all states alike it is best focused at "))
+        << window.text("rig.light.focus.note").toStdString();
+    window.enter("rig.light.blur", "1: 2, 2: 2");
+    EXPECT_EQ(window.state().installation, before) << "too little to tell a lens";
+    window.enter("rig.light.blur", "1: 2, 1.5: 1, 3: 2");
+    const LensFocus& lens = window.state().installation->projectors.front().focus;
+    EXPECT_NEAR(lens.aperture, 0.004, 1e-9);
+    EXPECT_NEAR(lens.focusDistance, 2.0, 1e-9);
+    ASSERT_TRUE(eventually([&] { return window.text("rig.light.focus.note").contains("no wider than "); },
+                           std::chrono::seconds(30)));
+    const QString blurred = window.text("rig.light.focus.note");
+    window.screenshot("light_blur");
+    window.click("rig.light.focus.best");
+    ASSERT_TRUE(eventually(
+        [&] {
+            const QString text = window.text("rig.light.focus.note");
+            return text != blurred && text.contains("no wider than ") &&
+                   !window.findNow<QPushButton>("rig.light.focus.best");
+        },
+        std::chrono::seconds(30)));
+    shown->setCurrentIndex(0);
+    window.studio().document.setInstallation(before);
+    ASSERT_TRUE(eventually(isAsBefore, std::chrono::seconds(30)));
+
     // What a camera sees is shown beside.
     auto* whose = window.find<QComboBox>("rig.light.whose");
     ASSERT_TRUE(whose);

@@ -9,6 +9,7 @@
 #include <QComboBox>
 #include <QHBoxLayout>
 #include <QLabel>
+#include <QLineEdit>
 #include <QPointer>
 #include <QPushButton>
 #include <QShowEvent>
@@ -61,6 +62,32 @@ QString lightText(const LightMap& map) {
         .arg(std::lround(map.incidence.inDegrees()));
 }
 
+QString metresText(double metres) { return QString("%1\u00A0m").arg(metres, 0, 'f', 2); }
+
+/// Of the room's first projector.
+QString focusText(const LightMap& map, const LensFocus& focus) {
+    if (map.bestFocus.empty() || !(map.bestFocus.front() > 0.0)) return "It lights nothing that could be sharp.";
+    const QString best = metresText(map.bestFocus.front());
+    if (!(focus.aperture > 0.0)) return QString("For all states alike it is best focused at %1.").arg(best);
+    return QString(
+               "On 95\u00A0% of what is lit a point of the picture is no wider than %1\u00A0mm; best focused at %2.")
+        .arg(1e3 * map.blur, 0, 'g', 2)
+        .arg(best);
+}
+
+/// "1.6: 2.1, 1.9: 0.4": metres and millimetres; empty where it says nothing of the kind.
+std::vector<MeasuredBlur> blurOf(const QString& text) {
+    std::vector<MeasuredBlur> measured;
+    for (const QString& pair : text.split(',', Qt::SkipEmptyParts)) {
+        const QStringList numbers = pair.split(':');
+        bool isDistance = false, isBlur = false;
+        const MeasuredBlur at{numbers.front().toDouble(&isDistance), 1e-3 * numbers.back().toDouble(&isBlur)};
+        if (numbers.size() != 2 || !isDistance || !isBlur) return {};
+        measured.push_back(at);
+    }
+    return measured;
+}
+
 QString seenText(const LightMap& map, const QString& camera) {
     if (!(map.lit > 0.0)) return QString("%1 sees nothing of the device.").arg(camera);
     return QString("%1 sees %2 of its upper side over all its states; of that, 95\u00A0% with %3 pixels a mm or more.")
@@ -97,6 +124,10 @@ protected:
 
 private:
     QWidget* makeForm();
+    QWidget* makeFocus();
+    void showFocus();
+    void setLensFocus(const QString& what, const LensFocus& focus); ///< of the room's first projector
+    void measureFocus();                                            ///< from blur that was typed in
     ValueField* addNumber(const QString& name, Quantity quantity, double least, double most, double value);
     void chooseModel();
     void showModel();  ///< which one the lens' numbers are of
@@ -125,6 +156,10 @@ private:
     std::array<ValueField*, 2> size_{}, throw_{};
     std::array<ValueField*, 3> low_{}, high_{};
     ValueField* shift_ = nullptr;
+    QLabel* focusNote_ = new QLabel;
+    ValueField *aperture_ = nullptr, *focused_ = nullptr;
+    QLineEdit* blur_ = new QLineEdit;
+    QPushButton* focusBest_ = new QPushButton("It is focused there now");
     QPushButton* button_ = new QPushButton("Find the best place");
     QLabel* best_ = new QLabel;
     QPushButton* hang_ = new QPushButton("Hang the projector there");
@@ -148,7 +183,7 @@ RigLight::RigLight(Studio& studio, RigSelection& selection)
     text_->setObjectName("rig.light.text");
     text_->setWordWrap(true);
     shown_->setObjectName("rig.light.shown");
-    shown_->addItems({"Pixels a millimetre", "Slant of the light", "How often it is lit"});
+    shown_->addItems({"Pixels a millimetre", "Slant of the light", "How often it is lit", "Blur of the light"});
     shown_->setToolTip("In the worst state in which a place is lit");
     whose_->setObjectName("rig.light.whose");
     whose_->setToolTip("Whose light is shown, or what a camera sees: a tracker loses a device that it does not see");
@@ -159,6 +194,7 @@ RigLight::RigLight(Studio& studio, RigSelection& selection)
     onDevice_->setObjectName("rig.light.onDevice");
     connect(onDevice_, &QCheckBox::toggled, this, [this] { colourDevice(); });
     column.layout->addWidget(onDevice_);
+    column.layout->addWidget(makeFocus());
     column.layout->addWidget(makeForm());
     column.layout->addWidget(button_);
     best_->setObjectName("rig.light.best");
@@ -245,6 +281,74 @@ QWidget* RigLight::makeForm() {
     layout->addWidget(makeRow("&Above the table", makePair(low_[1], high_[1])));
     layout->addWidget(makeRow("&Back to front", makePair(low_[2], high_[2])));
     return form;
+}
+
+QWidget* RigLight::makeFocus() {
+    auto* form = new QWidget;
+    auto* layout = new QVBoxLayout(form);
+    layout->setContentsMargins(0, 0, 0, 0);
+    layout->setSpacing(4);
+    layout->addWidget(makeHeading("How sharp is the light?"));
+    aperture_ = addNumber("aperture", Quantity::length, 0.0, 0.5, 0.0);
+    aperture_->setStep(1e-3);
+    aperture_->setToolTip("Width of the lens' opening: its focal length divided by its f-number, 18 mm / 2.4 for "
+                          "example; 0 where it is not known\n" +
+                          aperture_->toolTip());
+    focused_ = addNumber("focused", Quantity::length, 0.05, kFarthest, 2.0);
+    focused_->setToolTip("How far before the lens its picture is sharp\n" + focused_->toolTip());
+    blur_->setObjectName("rig.light.blur");
+    blur_->setPlaceholderText("1.6: 2.1, 1.9: 0.4, 2.3: 2.8");
+    blur_->setToolTip("Instead of the aperture: how wide a single pixel's light is on paper, in millimetres, at three "
+                      "distances or more from the lens, in metres");
+    focusNote_->setObjectName("rig.light.focus.note");
+    focusNote_->setWordWrap(true);
+    focusBest_->setObjectName("rig.light.focus.best");
+    focusBest_->setToolTip("After its ring was turned until a sheet at that distance is sharp");
+    connect(aperture_, &ValueField::committed, this, [this](double value) {
+        if (hanging()) setLensFocus(tr("Aperture of the projector"), {value, hanging()->focus.focusDistance});
+    });
+    connect(focused_, &ValueField::committed, this, [this](double value) {
+        if (hanging()) setLensFocus(tr("Focus of the projector"), {hanging()->focus.aperture, value});
+    });
+    connect(blur_, &QLineEdit::returnPressed, this, [this] { measureFocus(); });
+    connect(focusBest_, &QPushButton::clicked, this, [this] {
+        if (hanging() && found_ && !found_->now.bestFocus.empty())
+            setLensFocus(tr("Focus of the projector"), {hanging()->focus.aperture, found_->now.bestFocus.front()});
+    });
+    layout->addWidget(makeRow("Ape&rture", aperture_));
+    layout->addWidget(makeRow("&Focused at", focused_));
+    layout->addWidget(makeRow("Meas&ured blur", blur_));
+    layout->addWidget(focusNote_);
+    layout->addWidget(focusBest_);
+    return form;
+}
+
+void RigLight::setLensFocus(const QString& what, const LensFocus& focus) {
+    editInstallation(studio_.document, what, [&focus](Installation& room) { room.projectors.front().focus = focus; });
+}
+
+void RigLight::measureFocus() {
+    if (!hanging() || blur_->text().trimmed().isEmpty()) return;
+    studio_.notices.dismissAll(kLightPlace);
+    try {
+        setLensFocus(tr("Measured blur of the projector"), lensFocusOf(blurOf(blur_->text())));
+        blur_->clear();
+    } catch (const InvalidInput& error) {
+        slots_.fail(kLightPlace, error);
+    }
+}
+
+void RigLight::showFocus() {
+    const InstalledProjector* projector = hanging();
+    for (QWidget* part : std::initializer_list<QWidget*>{aperture_, focused_, blur_}) part->setEnabled(projector);
+    focusNote_->setVisible(projector && found_);
+    const bool lights = projector && projector->enabled && found_ && !found_->now.bestFocus.empty() &&
+                        found_->now.bestFocus.front() > 0.0;
+    focusBest_->setVisible(lights && std::abs(found_->now.bestFocus.front() - projector->focus.focusDistance) > 5e-3);
+    if (!projector) return;
+    aperture_->setValue(projector->focus.aperture);
+    focused_->setValue(projector->focus.focusDistance);
+    if (found_) focusNote_->setText(focusText(lights ? found_->now : LightMap{}, projector->focus));
 }
 
 void RigLight::chooseModel() {
@@ -348,9 +452,13 @@ void RigLight::measure() {
                     point = glm::vec3(room->worldFromDevice * glm::vec4(point, 1.0F));
                 found->mesh = std::move(mesh);
                 std::vector<CalibratedCamera> cameras;
-                for (const InstalledProjector& projector : room->projectors)
-                    if (projector.enabled) cameras.push_back(projector.camera);
-                found->now = found->device->lightOf(cameras);
+                std::vector<LensFocus> focus;
+                for (const InstalledProjector& projector : room->projectors) {
+                    if (!projector.enabled) continue;
+                    cameras.push_back(projector.camera);
+                    focus.push_back(projector.focus);
+                }
+                found->now = found->device->lightOf(cameras, {}, focus);
                 for (const InstalledCamera& camera : room->cameras)
                     found->seen.push_back(found->device->lightOf({&camera.camera, 1}));
             });
@@ -405,6 +513,7 @@ const LightMap* RigLight::shownMap() const {
 
 void RigLight::showAll() {
     listSights();
+    showFocus();
     const LightMap* map = shownMap();
     const int camera = whose_->currentIndex() - (proposed_ ? 2 : 1);
     text_->setText(!rig_         ? "Open a rig to see how light reaches it."

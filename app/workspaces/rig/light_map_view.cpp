@@ -22,6 +22,8 @@ constexpr int kScaleRoom = 44;
 constexpr int kMargin = 12;
 constexpr int kCell = 3; ///< pixels of the widget that one look-up colours
 
+QString millimetresText(double metres) { return QString("%1\u00A0mm").arg(1e3 * metres, 0, 'g', 2); }
+
 QString degreesText(Angle angle) { return QString("%1\u00B0").arg(std::lround(angle.inDegrees())); }
 
 } // namespace
@@ -78,6 +80,8 @@ double LightMapView::goodness(const LightAt& at) const {
         return at.pixelsPerMillimetre / wish_.pixelsPerMillimetre;
     case Shown::incidence:
         return at.lit > 0.0 ? 1.0 - at.incidence.inRadians() / wish_.mostIncidence.inRadians() : 0.0;
+    case Shown::blur:
+        return at.lit > 0.0 ? 1.0 - at.blur / wish_.mostBlur : 0.0;
     case Shown::lit:
         break;
     }
@@ -91,10 +95,13 @@ void LightMapView::paintEvent(QPaintEvent* /*event*/) {
     painter.setPen(colors.line);
     painter.setBrush(colors.sunken);
     painter.drawRoundedRect(QRectF(rect()).adjusted(0.5, 0.5, -0.5, -0.5), 4, 4);
-    if (!map_ || !device_) {
+    const bool blurUnknown = map_ && shown_ == Shown::blur && !map_->blurKnown;
+    if (!map_ || !device_ || blurUnknown) {
         painter.setPen(colors.textMuted);
         painter.drawText(rect().adjusted(16, 8, -16, -8), Qt::AlignCenter | Qt::TextWordWrap,
-                         "The device from above, coloured by the light that reaches it");
+                         blurUnknown ? "How sharp light is follows from the lens' aperture, or from blur that was "
+                                       "measured: enter one of them below"
+                                     : "The device from above, coloured by the light that reaches it");
         return;
     }
     if (picture_.isNull()) picture_ = makePicture();
@@ -158,6 +165,9 @@ void LightMapView::paintScale(QPainter& painter) const {
     } else if (shown_ == Shown::incidence) {
         bad = degreesText(wish_.mostIncidence) + ", or dark";
         good = "head on";
+    } else if (shown_ == Shown::blur) {
+        bad = millimetresText(wish_.mostBlur) + " wide, or dark";
+        good = "sharp";
     }
     painter.drawText(words, Qt::AlignLeft | Qt::AlignVCenter, bad);
     painter.drawText(words, Qt::AlignRight | Qt::AlignVCenter, good);
@@ -167,9 +177,10 @@ void LightMapView::mouseMoveEvent(QMouseEvent* event) {
     const LightAt* place = at(event->position());
     if (!place) return QToolTip::hideText();
     const QString often = QString("Lit in %1 of the states").arg(shareText(place->lit));
-    const QString how = QString("%1 pixels a mm and %2 from head on, at worst")
-                            .arg(place->pixelsPerMillimetre, 0, 'f', 2)
-                            .arg(degreesText(place->incidence));
+    QString how = QString("%1 pixels a mm and %2 from head on, at worst")
+                      .arg(place->pixelsPerMillimetre, 0, 'f', 2)
+                      .arg(degreesText(place->incidence));
+    if (map_->blurKnown) how += QString("; a point is %1 wide").arg(millimetresText(place->blur));
     QToolTip::showText(event->globalPosition().toPoint(), place->lit > 0.0 ? often + "\n" + how : "Never lit", this);
 }
 

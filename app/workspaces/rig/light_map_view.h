@@ -16,7 +16,7 @@ namespace lumorph::studio {
 class LightMapView : public QWidget {
     Q_OBJECT
 public:
-    enum class Shown { pixels, incidence, lit };
+    enum class Shown { pixels, incidence, lit, blur };
 
     explicit LightMapView(QWidget* parent = nullptr);
     /// `device`: at rest, world metres.

@@ -116,6 +116,16 @@ void addLens(SceneForm& form, const Part<InstalledProjector>& projector) {
         {"projector.principal", QObject::tr("Principal point"),
          QObject::tr("In pixels from the middle of the top left one; a lens shift puts it outside")},
         {Quantity::plain, -1e5, 1e5, 639.5, 1.0}, "xy", camera, [](auto& lens) -> auto& { return lens.principal; });
+    const auto focus = memberOf<LensFocus>(
+        projector, [](auto& found) -> auto& { return found.focus; });
+    form.number(
+        {"projector.aperture", QObject::tr("Aperture"),
+         QObject::tr("Width of the lens' opening: focal length divided by f-number; 0 where it is not known")},
+        {Quantity::length, 0.0, 0.5, 0.0, 0.001}, focus, [](auto& lens) -> auto& { return lens.aperture; });
+    form.number(
+        {"projector.focus", QObject::tr("Focused at"), QObject::tr("How far before the lens its picture is sharp")},
+        {Quantity::length, 0.05, kFarthestProjector, 2.0, 0.01}, focus,
+        [](auto& lens) -> auto& { return lens.focusDistance; });
     const char* const names[] = {"k1", "k2", "p1", "p2", "k3"};
     for (std::size_t i = 0; i < 5; ++i)
         form.number(

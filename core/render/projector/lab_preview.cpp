@@ -14,8 +14,8 @@ namespace {
 constexpr glm::vec2 kStandIn(0.5F, 0.1F);
 
 ShaderFiles litFiles(std::vector<std::string> defines) {
-    std::vector<std::string> pieces{"version.glsl", "camera.glsl", "physical_normal.glsl", "projector_light.glsl",
-                                    "projector_sight.glsl"};
+    std::vector<std::string> pieces{"version.glsl",         "camera.glsl",          "physical_normal.glsl",
+                                    "projector_light.glsl", "projector_sight.glsl", "hands.glsl"};
     if (std::ranges::find(defines, "RESPONSE") != defines.end()) pieces.emplace_back("projector_response.glsl");
     pieces.emplace_back("lab.frag");
     ShaderFiles files = shaderFiles({"version.glsl", "camera.glsl", "physical.vert"}, pieces);
@@ -25,7 +25,7 @@ ShaderFiles litFiles(std::vector<std::string> defines) {
 
 ShaderFiles roomLightFiles(std::vector<std::string> defines) {
     ShaderFiles files = shaderFiles({"version.glsl", "camera.glsl", "physical.vert"},
-                                    {"version.glsl", "camera.glsl", "physical_normal.glsl", "room_light.frag"});
+                                    {"version.glsl", "physical_normal.glsl", "room_lamp.glsl", "room_light.frag"});
     files.defines = std::move(defines);
     return files;
 }
@@ -35,6 +35,8 @@ ShaderFiles roomLightFiles(std::vector<std::string> defines) {
 LabPreview::LabPreview()
     : flat_(shaderFiles({"version.glsl", "camera.glsl", "physical.vert"}, {"version.glsl", "flat.frag"})),
       room_(shaderFiles({"full_frame.vert"}, {"version.glsl", "noise.glsl", "room.frag"})),
+      hands_(shaderFiles({"full_frame.vert"},
+                         {"version.glsl", "camera.glsl", "hands.glsl", "room_lamp.glsl", "hand.frag"})),
       roomLight_{Program(roomLightFiles({})), Program(roomLightFiles({"TABLE"}))}, light_{Program(litFiles({})),
                                                                                           Program(litFiles({"TABLE"}))},
       measuredLight_{Program(litFiles({"RESPONSE"})), Program(litFiles({"RESPONSE", "TABLE"}))},
@@ -68,29 +70,40 @@ void LabPreview::drawWith(Light& light, const Observer& observer, const DeviceSu
     }
 }
 
-void LabPreview::drawRoom(const Observer& observer, float light, const DeviceSurface& device) {
+/// The current program sees by the observer's rays.
+void LabPreview::drawFullFrame(Program& program, const Observer& observer, float light) {
     const CalibratedCamera& camera = observer.camera;
-    glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
-    room_.use();
-    room_.set("worldFromCamera", glm::mat4(glm::inverse(camera.cameraFromWorld)));
-    room_.set("viewerPosition", glm::vec3(positionOf(camera)));
-    room_.set("focal", glm::vec2(camera.focal));
-    room_.set("principal", glm::vec2(camera.principal));
-    room_.set("frameSize", glm::vec2(camera.size));
-    room_.set("tableHalf", 0.5F * observer.installation.tableSize);
-    room_.set("roomLight", light);
-    glDepthMask(GL_FALSE);
+    program.set("worldFromCamera", glm::mat4(glm::inverse(camera.cameraFromWorld)));
+    program.set("viewerPosition", glm::vec3(positionOf(camera)));
+    program.set("focal", glm::vec2(camera.focal));
+    program.set("principal", glm::vec2(camera.principal));
+    program.set("frameSize", glm::vec2(camera.size));
+    program.set("roomLight", light);
     glBindVertexArray(noAttributes_.name());
     glDrawArrays(GL_TRIANGLES, 0, 3);
     glBindVertexArray(0);
+}
+
+void LabPreview::drawRoom(const Observer& observer, float light, const DeviceSurface& device) {
+    glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
+    room_.use();
+    room_.set("tableHalf", 0.5F * observer.installation.tableSize);
+    glDepthMask(GL_FALSE);
+    drawFullFrame(room_, observer, light);
     glDepthMask(GL_TRUE);
     drawWith(roomLight_, observer, device, [&](Program& program) { program.set("roomLight", light); });
+    if (observer.hands.empty()) return;
+    hands_.use();
+    setHands(hands_, observer.hands);
+    setCamera(hands_, observer.camera, observer.range.near, observer.range.far);
+    drawFullFrame(hands_, observer, light);
 }
 
 void LabPreview::addProjector(const Observer& observer, const DeviceSurface& device, const ProjectorTarget& projector,
                               Light& light) {
     drawWith(light, observer, device, [&](Program& program) {
         setLight(program, projector.projector);
+        setHands(program, observer.hands);
         setSight(program, projector, 0);
         bindTexture(1, projector.sent.texture());
         program.set("sent", 1);
@@ -140,7 +153,7 @@ void LabPreview::draw(GLuint framebuffer, const CalibratedCamera& observer, floa
                       PictureOutput& out) {
     if (!radiance_ || radiance_->size() != observer.size) radiance_.emplace(observer.size, GL_RGBA16F);
     table_.fit(observer, frame.installation->tableSize);
-    const Observer seen{observer, depthRange(observer, physicalBounds(frame)), *frame.installation};
+    const Observer seen{observer, depthRange(observer, physicalBounds(frame)), *frame.installation, frame.hands};
     beginSurfaces(radiance_->framebuffer(), observer.size);
     drawLit(seen, room, device, projectors);
     if (!problem_.empty()) drawStandIn(seen, device);
@@ -150,7 +163,7 @@ void LabPreview::draw(GLuint framebuffer, const CalibratedCamera& observer, floa
 void LabPreview::drawMask(GLuint framebuffer, const CalibratedCamera& observer, const ShowFrame& frame,
                           const DeviceSurface& device, std::span<const ProjectorTarget* const> projectors) {
     table_.fit(observer, frame.installation->tableSize);
-    const Observer seen{observer, depthRange(observer, physicalBounds(frame)), *frame.installation};
+    const Observer seen{observer, depthRange(observer, physicalBounds(frame)), *frame.installation, frame.hands};
     beginSurfaces(framebuffer, observer.size);
     drawSurfaces(seen, device, 0.0F, 0.0F);
     glDepthMask(GL_FALSE);
@@ -161,7 +174,7 @@ void LabPreview::drawMask(GLuint framebuffer, const CalibratedCamera& observer, 
 
 std::size_t LabPreview::objectCount() const noexcept {
     std::size_t count = TableGrid::kObjects + (radiance_ ? ColorTarget::kObjects : 0);
-    count += 1 + flat_.objectCount() + room_.objectCount();
+    count += 1 + flat_.objectCount() + room_.objectCount() + hands_.objectCount();
     for (const Light* light : {&roomLight_, &light_, &measuredLight_, &mask_})
         count += light->device.objectCount() + light->table.objectCount();
     return count;

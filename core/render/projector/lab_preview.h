@@ -10,7 +10,7 @@
 
 namespace lumorph {
 
-/// What an observer sees of device and table in the projectors' light.
+/// What an observer sees of device and table in the projectors' light, and of the hands that keep it from them.
 class LabPreview {
 public:
     LabPreview();
@@ -34,6 +34,7 @@ private:
         const CalibratedCamera& camera;
         DepthRange range;
         const Installation& installation;
+        std::span<const Capsule> hands;
     };
     /// Programs of one kind of light, on device and table.
     struct Light {
@@ -43,6 +44,7 @@ private:
     void drawWith(Light& light, const Observer& observer, const DeviceSurface& device,
                   const std::function<void(Program&)>& set);
     void drawRoom(const Observer& observer, float light, const DeviceSurface& device);
+    void drawFullFrame(Program& program, const Observer& observer, float light);
     void drawLit(const Observer& observer, float room, const DeviceSurface& device,
                  std::span<const ProjectorTarget* const> projectors);
     void drawStandIn(const Observer& observer, const DeviceSurface& device);
@@ -54,7 +56,7 @@ private:
     TableGrid table_;
     std::optional<ColorTarget> radiance_;
     gl::VertexArray noAttributes_;
-    Program flat_, room_;
+    Program flat_, room_, hands_;
     Light roomLight_, light_, measuredLight_, mask_;
     std::string problem_;
     bool standInRefused_ = false;

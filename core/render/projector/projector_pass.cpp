@@ -17,7 +17,7 @@ ShaderFiles physicalFiles(const std::vector<std::string>& fragment, std::vector<
 
 ShaderFiles weightFiles(std::vector<std::string> defines) {
     return physicalFiles({"version.glsl", "camera.glsl", "physical_normal.glsl", "projector_light.glsl",
-                          "projector_sight.glsl", "projector_weight.frag"},
+                          "projector_sight.glsl", "hands.glsl", "projector_weight.frag"},
                          std::move(defines));
 }
 
@@ -147,15 +147,16 @@ void ProjectorPass::drawDistance(ProjectorTarget& target) {
     pass(0);
 }
 
-void ProjectorPass::addWeight(const ProjectorTarget& shown, const ProjectorTarget& weighed, const DeviceSurface& device,
-                              bool compensation) {
+void ProjectorPass::addWeight(const ProjectorTarget& shown, const ProjectorTarget& weighed, const ShowFrame& frame,
+                              const DeviceSurface& device) {
     const bool own = &shown == &weighed;
     const bool black = shown.blend->hasBlacks();
     Program& onDevice = black ? deviceBlack_ : deviceWeight_;
     for (Program* program : {&onDevice, black ? &tableBlack_ : &tableWeight_}) {
         program->use();
         program->set("weighedBlack", weighed.projector.black);
-        program->set("compensation", compensation ? 1.0F : 0.0F);
+        program->set("compensation", frame.installation->compensation ? 1.0F : 0.0F);
+        setHands(*program, frame.hands);
         setLens(*program, shown);
         program->set("viewerPosition", glm::vec3(positionOf(shown.projector.camera)));
         setLight(*program, weighed.projector);
@@ -169,8 +170,8 @@ void ProjectorPass::addWeight(const ProjectorTarget& shown, const ProjectorTarge
     }
 }
 
-void ProjectorPass::drawWeights(std::span<ProjectorTarget* const> targets, const DeviceSurface& device,
-                                bool compensation) {
+void ProjectorPass::drawWeights(std::span<ProjectorTarget* const> targets, const ShowFrame& frame,
+                                const DeviceSurface& device) {
     const bool black = std::ranges::any_of(
         targets, [](const ProjectorTarget* target) { return target->projector.black != glm::vec3(0.0F); });
     for (ProjectorTarget* target : targets) {
@@ -186,7 +187,7 @@ void ProjectorPass::drawWeights(std::span<ProjectorTarget* const> targets, const
         glEnable(GL_BLEND);
         glBlendEquation(GL_FUNC_ADD);
         glBlendFunc(GL_ONE, GL_ONE);
-        for (const ProjectorTarget* weighed : targets) addWeight(*shown, *weighed, device, compensation);
+        for (const ProjectorTarget* weighed : targets) addWeight(*shown, *weighed, frame, device);
     }
     glDisable(GL_BLEND);
     glDepthMask(GL_TRUE);

@@ -31,8 +31,9 @@ public:
     void drawDepth(ProjectorTarget& target, const ShowFrame& frame, const DeviceSurface& device, const EyeViews& views,
                    bool shared);
     /// Weighs projectors against one another; all their depths are drawn. Where one has a measured black, adds up what
-    /// all blacks make of each place, with `compensation` as in the installation.
-    void drawWeights(std::span<ProjectorTarget* const> targets, const DeviceSurface& device, bool compensation);
+    /// all blacks make of each place.
+    /// What a tracked hand keeps from one is left to the others.
+    void drawWeights(std::span<ProjectorTarget* const> targets, const ShowFrame& frame, const DeviceSurface& device);
     /// Begins the picture of one projector with what the eye sees, and hides what is done; depth and weights are drawn.
     /// The rest is the eye pass's.
     void drawSeen(const ProjectorTarget& target, const ShowFrame& frame, const DeviceSurface& device,
@@ -51,8 +52,8 @@ private:
     void hideDone(const ProjectorTarget& target, const EyeViews& views);
     void drawFullFrame(const PixelRectangle& part);
     void drawDistance(ProjectorTarget& target);
-    void addWeight(const ProjectorTarget& shown, const ProjectorTarget& weighed, const DeviceSurface& device,
-                   bool compensation);
+    void addWeight(const ProjectorTarget& shown, const ProjectorTarget& weighed, const ShowFrame& frame,
+                   const DeviceSurface& device);
     [[nodiscard]] Program& mixedProgram(const ProjectorTarget& target);
 
     gl::VertexArray noAttributes_;

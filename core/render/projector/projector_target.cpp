@@ -1,5 +1,8 @@
 #include "core/render/projector/projector_target.h"
 
+#include <algorithm>
+#include <vector>
+
 #include <glm/matrix.hpp>
 
 #include "core/base/srgb.h"
@@ -10,6 +13,7 @@
 namespace lumorph {
 namespace {
 
+constexpr std::size_t kMostCapsules = 8; ///< as in hands.glsl
 constexpr float kDarkestSurface = 0.01F; // what is darker nobody makes bright
 
 } // namespace
@@ -102,6 +106,19 @@ void setSight(Program& program, const ProjectorTarget& target, int unit) {
     program.set("sightDepthSlope", static_cast<float>(depthSlope(range)));
     bindTexture(unit, target.sent.depthTexture());
     program.set("sightDepth", unit);
+}
+
+void setHands(Program& program, std::span<const Capsule> hands) {
+    std::vector<glm::vec4> from;
+    std::vector<glm::vec3> to;
+    for (const Capsule& capsule : hands.first(std::min(hands.size(), kMostCapsules))) {
+        from.emplace_back(capsule.from, capsule.radius);
+        to.push_back(capsule.to);
+    }
+    program.set("handCapsules", static_cast<int>(from.size()));
+    if (from.empty()) return;
+    program.set("handFrom", std::span<const glm::vec4>(from));
+    program.set("handTo", std::span<const glm::vec3>(to));
 }
 
 } // namespace lumorph

@@ -1,7 +1,9 @@
 #pragma once
 
 #include <optional>
+#include <span>
 
+#include "core/geometry/capsule.h"
 #include "core/render/eye/device_surface.h"
 #include "core/render/eye/eye_pass.h"
 #include "core/render/eye/table_grid.h"
@@ -57,5 +59,8 @@ void setOutput(Program& program, const ProjectorTarget& target, const Installati
 
 /// Sets those of projector_sight.glsl; binds the depth map to a texture unit.
 void setSight(Program& program, const ProjectorTarget& target, int unit);
+
+/// Sets those of hands.glsl; of more capsules than that has room for, the first ones.
+void setHands(Program& program, std::span<const Capsule> hands);
 
 } // namespace lumorph

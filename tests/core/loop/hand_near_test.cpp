@@ -64,5 +64,28 @@ TEST(HandDistance, WithoutABoxThereIsNothingToBeNear) {
     EXPECT_FALSE(handDistance(board, Box{}, glm::mat4(1.0F), kNow));
 }
 
+TEST(HandShape, ReachesFromTheTipOverTheBodyToTheArm) {
+    Installation room;
+    const Pose body{{0.1, 0.3, 0.2}, {1.0, 0.0, 0.0, 0.0}};
+    const std::vector<Capsule> ball = handShape(room, body);
+    ASSERT_EQ(ball.size(), 1U) << "nobody knows where its fingers point";
+    EXPECT_EQ(ball[0].from, ball[0].to);
+    EXPECT_EQ(ball[0].from, glm::vec3(body.position));
+
+    room.pointerTip = {0.0F, -0.1F, 0.0F};
+    room.worldFromTracker = glm::translate(glm::mat4(1.0F), {1.0F, 0.0F, 0.0F});
+    const std::vector<Capsule> hand = handShape(room, body);
+    ASSERT_EQ(hand.size(), 2U);
+    const auto isAt = [](const glm::vec3& point, const glm::vec3& expected) {
+        return glm::distance(point, expected) < 1e-5F;
+    };
+    EXPECT_TRUE(isAt(hand[0].from, {1.1F, 0.2F, 0.2F})) << "the tip, in the room";
+    EXPECT_TRUE(isAt(hand[0].to, {1.1F, 0.3F, 0.2F}));
+    EXPECT_EQ(hand[1].from, hand[0].to);
+    EXPECT_NEAR(hand[1].to.x, 1.1F, 1e-5F);
+    EXPECT_GT(hand[1].to.y, 0.5F) << "the arm goes on in the finger's direction";
+    EXPECT_LT(hand[0].radius, hand[1].radius);
+}
+
 } // namespace
 } // namespace lumorph

@@ -10,6 +10,7 @@
 #include <gtest/gtest.h>
 
 #include "core/base/error.h"
+#include "core/loop/show_stage.h"
 #include "core/loop/viewer_stage.h"
 #include "tests/core/loop/scene_loop_fixture.h"
 #include "tests/support/not_a_number.h"
@@ -228,6 +229,32 @@ TEST_F(SceneLoopTest, DeviceAndHeadArePredictedForTheMomentOfTheLight) {
     EXPECT_FALSE(frame->eye) << "lost";
     EXPECT_EQ(frame->worldFromDevice, scene.worldFromDevice);
     EXPECT_EQ(frame->ms.latency, 0.0);
+    EXPECT_TRUE(loop_.settled());
+}
+
+TEST_F(SceneLoopTest, HandsArePredictedForTheMomentOfTheLightToo) {
+    SceneInRoom scene = emptyScene();
+    scene.predictionSeconds = 0.06;
+    MatchWish wish = wishWith(scene);
+    const auto board = std::make_shared<PoseBoard>();
+    wish.poses = board;
+    const auto hand = board->stream("Ada's hand", PoseRole::pointer);
+    std::shared_ptr<const MatchFrame> frame = step(wish);
+    EXPECT_TRUE(frame->hands.empty());
+    double t = 0.0;
+    for (int k = 0; k < 120; ++k) {
+        t = 1e-6 * static_cast<double>(clock_.now().count());
+        ASSERT_TRUE(hand->push({clock_.now(), true, {{0.3 * t, 0.2, 0.0}, {1, 0, 0, 0}}}));
+        frame = loop_.step(wish, kFrame);
+        EXPECT_FALSE(loop_.settled()) << "its shadow moves";
+        clock_.advance(Microseconds{8'000});
+    }
+    ASSERT_EQ(frame->hands.size(), 1U);
+    EXPECT_NEAR(frame->hands[0].from.x, 0.3 * (t + 0.06), 1e-3);
+    EXPECT_EQ(ShowStage().frame(*frame).hands, frame->hands);
+    EXPECT_EQ(frame->eye, scene.eye) << "a hand is no head";
+    clock_.advance(Microseconds{300'000});
+    EXPECT_TRUE(loop_.step(wish, kFrame)->hands.empty()) << "lost";
     EXPECT_TRUE(loop_.settled());
 }
 

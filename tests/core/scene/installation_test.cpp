@@ -194,6 +194,10 @@ TEST(MarkOrigins, MarksNothingWhereNoFigureChanges) {
         {"the eye of nobody", [](Installation& i) { i.eye.x = 1.0F; }},
         {"whom to follow", [](Installation& i) { i.viewer = ViewerChoice::first; }},
         {"compensation", [](Installation& i) { i.compensation = true; }},
+        {"where it is sharp",
+         [](Installation& i) {
+             i.projectors[0].focus = {0.008, 1.7};
+         }},
         {"a camera's name", [](Installation& i) { i.cameras[0].name = "Right"; }},
         {"a camera's address", [](Installation& i) { i.cameras[0].address = "camera0"; }},
         {"an origin", [](Installation& i) { i.origins.table = kCalibrated; }},
@@ -259,6 +263,7 @@ TEST(SameRoom, IgnoresTheSimulatedEyeAndOriginsAndNothingElse) {
         {"distortion", [](Installation& i) { i.projectors[0].camera.distortion[2] += 1e-6; }, false},
         {"pose", [](Installation& i) { i.projectors[1].camera.cameraFromWorld[3].y += 1e-6; }, false},
         {"reference distance", [](Installation& i) { i.projectors[0].referenceDistance = 2.0; }, false},
+        {"focus", [](Installation& i) { i.projectors[0].focus.focusDistance = 1.7; }, false},
         {"peak", [](Installation& i) { i.projectors[0].peak = 2.6; }, false},
         {"gain", [](Installation& i) { i.projectors[0].gain.r = 1.0F; }, false},
         {"gamma", [](Installation& i) { i.projectors[0].gamma = 2.3; }, false},
