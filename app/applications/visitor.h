@@ -37,6 +37,8 @@ public:
     [[nodiscard]] glm::dvec2 lean() const noexcept;
     /// The same where a pointer that lies still asks for nothing: it counts while it is moved or held, and a moment on.
     [[nodiscard]] glm::dvec2 lively() const noexcept;
+    /// The tracked device's part of it; 0 without one.
+    [[nodiscard]] const glm::dvec2& leanOfDevice() const noexcept { return device_; }
     /// Keys and stick alone, at most 1 each way.
     [[nodiscard]] glm::dvec2 push() const noexcept;
     /// Where the pointer stands over the view, -1 to 1 from its middle; nothing while it is elsewhere.

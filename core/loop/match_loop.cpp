@@ -95,7 +95,7 @@ struct MatchLoop::Data {
     void fill(const MatchWish& wish, double sinceLast, MatchFrame& frame);
     /// The same, once what is shown is known.
     void fillShown(const MatchWish& wish, double sinceLast, MatchFrame& frame);
-    /// The scene's part of a frame: poses, viewer, time.
+    /// The scene's part of a frame, and its time.
     void look(const MatchWish& wish, double sinceLast, MatchFrame& frame);
     /// What scene and program make of what the servos are to do: the driver that is left is target or program where
     /// voxels are followed, else hand or dance.
@@ -125,6 +125,10 @@ void MatchLoop::Data::fill(const MatchWish& wish, double sinceLast, MatchFrame& 
     const StageTimer timer(clock, frame.ms.total);
     motion.follow(wish.rig, wish.rigOrigin);
     motion.use(wish.installation, wish.lightDelay);
+    if (wish.installation && (wish.scene || wish.program)) {
+        const StageTimer track(clock, frame.ms.track);
+        viewer.look(wish, sinceLast, frame); // before the program, which may ask who looks
+    }
     fillShown(program.ask(wish, sinceLast, motion.strokes(), clock, frame), sinceLast, frame);
 }
 
@@ -154,11 +158,9 @@ void MatchLoop::Data::fillShown(const MatchWish& wish, double sinceLast, MatchFr
 
 void MatchLoop::Data::look(const MatchWish& wish, double sinceLast, MatchFrame& frame) {
     if (!wish.scene) return;
-    const StageTimer timer(clock, frame.ms.track);
     frame.scene = wish.scene;
     frame.installation = wish.installation;
     frame.assets = wish.assets;
-    viewer.look(wish, sinceLast, frame);
     time.step(wish, sinceLast);
     frame.sceneSeconds = time.seconds();
 }

@@ -126,6 +126,7 @@ MatchWish ProgramStage::answered(const MatchWish& wish, std::span<const double> 
     moment.field = wish.field;
     moment.installation = wish.installation;
     moment.worldFromDevice = worldFromDevice_;
+    moment.eye = frame.eye;
     moment.inputs = frame.inputs;
     moment.language = wish.language;
     ShowContent content;

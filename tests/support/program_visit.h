@@ -58,6 +58,8 @@ public:
         moment_.worldFromDevice = glm::mat4_cast(glm::angleAxis(aboutX, glm::vec3(1.0F, 0.0F, 0.0F)) *
                                                  glm::angleAxis(aboutZ, glm::vec3(0.0F, 0.0F, 1.0F)));
     }
+    /// The viewer's eye is here from now on, world metres.
+    void look(const glm::vec3& eye) { moment_.eye = eye; }
     void setLanguage(Language language) { moment_.language = language; }
     /// These bodies are tracked from now on.
     void see(std::vector<ShowBody> bodies) { bodies_ = std::move(bodies); }

@@ -105,6 +105,15 @@ SceneItem goalRing(const Level& level) {
     return item;
 }
 
+SceneItem ballBehind() {
+    SceneItem item = demoItem(kBehindItem, "Ball behind a wall", ShapeItem{ShapeItem::Form::sphere, glm::vec3(1.0F)});
+    item.material = glowing("Ball behind a wall", {1.0F, 0.62F, 0.30F}, 0.9F);
+    item.material.unlit = true;
+    item.opacity = 0.5F;
+    item.visible = false;
+    return item;
+}
+
 SceneItem trailLight(int number) {
     const double share = 1.0 - static_cast<double>(number) / kTrail;
     const auto side = static_cast<float>(2.0 * kBallRadius * (0.25 + 0.55 * share));
@@ -173,6 +182,27 @@ void showTrail(Scene& scene, const Game& game) {
     }
 }
 
+/// A ball of light before the wall that hides it, as large for the eye as the ball would be.
+void showBehind(Scene& scene, const Game& game, const glm::dvec3& eye) {
+    const glm::dvec3 way = eye - game.ball().position;
+    const double far = glm::length(way);
+    const double hidden = hiddenUpTo(game.blocks(), game.ball().position, eye);
+    const double at = hidden + kBallRadius;
+    if (hidden == 0.0 || at > 0.5 * far) return;
+    SceneItem& item = itemOf(scene, kBehindItem);
+    item.visible = true;
+    item.position = shown(game.ball().position + (at / far) * way);
+    item.scale = glm::vec3(static_cast<float>(2.0 * kBallRadius * (1.0 - at / far)));
+}
+
+void lean(Scene& scene, const glm::dvec2& lean) {
+    SceneItem& board = itemOf(scene, kLeaning);
+    const glm::dquat turn = boardTurn(lean);
+    const glm::dvec3 middle(0.0, static_cast<double>(kSheet), 0.0);
+    board.rotation = glm::normalize(glm::quat(turn));
+    board.position = glm::vec3(middle - turn * middle);
+}
+
 void showGoal(Scene& scene, const Game& game, double inGoal) {
     SceneItem& beam = itemOf(scene, kBeamItem);
     const double breath = 0.5 + 0.5 * std::sin(2.0 * std::numbers::pi * 0.6 * game.seconds());
@@ -189,6 +219,26 @@ void showGoal(Scene& scene, const Game& game, double inGoal) {
 }
 
 } // namespace
+
+glm::dquat boardTurn(const glm::dvec2& lean) {
+    const glm::dvec3 up = glm::normalize(glm::dvec3(std::tan(lean.x), 1.0, std::tan(lean.y)));
+    return glm::normalize(glm::dquat(1.0 + up.y, up.z, 0.0, -up.x)); // the shortest turn from +Y
+}
+
+double hiddenUpTo(const std::vector<Block>& blocks, const glm::dvec3& ball, const glm::dvec3& eye) {
+    constexpr double kStep = 0.001, kHighest = 0.04; // metres: no wall is higher
+    const glm::dvec3 way = glm::normalize(eye - ball);
+    if (!(way.y > 0.05)) return 0.0; // an eye beside the tablet sees walls alone
+    double hidden = 0.0;
+    for (double gone = kBallRadius + kStep; ball.y + gone * way.y < kHighest; gone += kStep) {
+        const glm::dvec3 at = ball + gone * way;
+        const bool isIn = std::ranges::any_of(blocks, [&](const Block& block) {
+            return at.y > block.bottom && at.y < topAt(block, {at.x, at.z});
+        });
+        if (isIn) hidden = gone;
+    }
+    return hidden;
+}
 
 std::shared_ptr<const SceneAssets> boardPictures(const std::vector<Level>& levels) {
     Scene all;
@@ -215,30 +265,39 @@ Board::Board(const Game& game, const SceneAssets& pictures) : still_(defaultScen
     still_.items.push_back(goalDisc(level));
     still_.items.push_back(goalBeam(level));
     still_.items.push_back(goalRing(level));
+    still_.items.push_back(ballBehind());
     for (int k = 0; k < kTrail; ++k) still_.items.push_back(trailLight(k));
     int number = 0;
     for (const glm::ivec2 cell : pickUps_) {
         still_.items.push_back(gem(level, cell, kFirstPickUp + number, number));
         ++number;
     }
+    for (SceneItem& item : still_.items)
+        if (item.id != kSun) item.parent = kLeaning;
+    still_.items.insert(still_.items.begin(), demoItem(kLeaning, "Board", GroupItem{}));
     auto assets = std::make_shared<SceneAssets>(pictures);
     assets->models[kMazeModel] = std::make_shared<const SceneModel>(boardModel(level, game.blocks()));
     assets_ = std::move(assets);
 }
 
-std::shared_ptr<const Scene> Board::show(const Game& game, const Ghost* best, double inGoal) const {
+std::shared_ptr<const Scene> Board::show(const Game& game, const Beside& beside) const {
     auto scene = std::make_shared<Scene>(still_);
+    lean(*scene, beside.lean);
     SceneItem& rolling = itemOf(*scene, kBallItem);
     rolling.position = shown(game.ball().position);
     rolling.rotation = glm::normalize(glm::quat(game.ball().rotation));
     rolling.visible = !game.fallen();
-    if (best && !best->positions.empty() && game.seconds() < best->seconds) {
+    if (const Ghost* best = beside.best; best && !best->positions.empty() && game.seconds() < best->seconds) {
         SceneItem& ghost = itemOf(*scene, kGhostItem);
         ghost.visible = true;
         ghost.position = shown(glm::dvec3(positionAt(*best, game.seconds())));
     }
     showTrail(*scene, game);
-    showGoal(*scene, game, inGoal);
+    showGoal(*scene, game, beside.inGoal);
+    if (beside.eye && !game.fallen()) {
+        const glm::dvec3 middle(0.0, static_cast<double>(kSheet), 0.0);
+        showBehind(*scene, game, glm::conjugate(boardTurn(beside.lean)) * (*beside.eye - middle));
+    }
     showPickUps(*scene, game, pickUps_);
     return scene;
 }

@@ -4,12 +4,15 @@
 #include <string>
 #include <utility>
 
+#include <glm/matrix.hpp>
+
 #include "core/base/error.h"
 
 namespace lumorph::labyrinth {
 namespace {
 
-constexpr double kRest = 2.0; ///< seconds in the goal until the next level
+constexpr double kRest = 2.0;       ///< seconds in the goal until the next level
+constexpr double kShownLean = 0.35; ///< of a lean: at most 5 degrees, 12 mm at the tablet's sides
 
 const char* soundOf(GameEvent::Kind kind) {
     switch (kind) {
@@ -62,16 +65,22 @@ ShowContent LabyrinthProgram::frame(const ShowMoment& moment) {
     ShowContent content;
     content.sounds = sounds();
     if (finish(moment.step)) content.keepsake = [best = best_] { return ghostsText(best); };
-    content.scene = board_->show(*game_, best(), rests_);
+    Board::Beside beside{best(), rests_, boardLean(), std::nullopt};
+    if (moment.eye) beside.eye = glm::dvec3(glm::inverse(moment.worldFromDevice) * glm::vec4(*moment.eye, 1.0F));
+    content.scene = board_->show(*game_, beside);
     content.assets = board_->assets();
     const glm::dvec3& ball = game_->ball().position;
-    content.target = game_->fallen() ? relief_->level() : relief_->withBall({ball.x, ball.z});
+    content.target = game_->fallen() ? relief_->level(beside.lean) : relief_->withBall({ball.x, ball.z}, beside.lean);
     content.following = Following::split;
     const std::pair stands(static_cast<int>(game_->seconds()), game_->score());
     if (!caption_ || stands != std::exchange(stands_, stands))
         caption_ = captionOf(levels_[number_], number_ + 1, stands.first, stands.second);
     content.caption = caption_;
     return content;
+}
+
+glm::dvec2 LabyrinthProgram::boardLean() const noexcept {
+    return kShownLean * (game_->lean() - (playsItself() ? glm::dvec2(0.0) : visitor_.leanOfDevice()));
 }
 
 /// Whoever comes begins anew, and who has gone leaves it to itself.

@@ -29,6 +29,9 @@ public:
     [[nodiscard]] const Game& game() const noexcept { return *game_; }
     [[nodiscard]] std::size_t level() const noexcept { return number_; } ///< from 0
     [[nodiscard]] bool playsItself() const noexcept { return !visitor_.there(); }
+    /// By how much the board leans on the device, in picture and relief, radians as Game's: what of the game's lean the
+    /// device has not done itself, a part of it.
+    [[nodiscard]] glm::dvec2 boardLean() const noexcept;
     [[nodiscard]] const std::vector<Ghost>& bestRuns() const noexcept { return best_; }
 
 private:

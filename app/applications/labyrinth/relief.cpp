@@ -62,8 +62,18 @@ Relief::Relief(const Level& level, const std::vector<Block>& blocks) {
     }
 }
 
-HeightGrid Relief::withBall(const glm::dvec2& place) const {
+HeightGrid Relief::level(const glm::dvec2& lean) const {
     HeightGrid grid = level_;
+    const glm::dvec2 falls(std::tan(lean.x), std::tan(lean.y));
+    for (int j = 0; j < grid.rows; ++j)
+        for (int i = 0; i < grid.columns; ++i)
+            grid.heights[static_cast<std::size_t>(j) * static_cast<std::size_t>(grid.columns) +
+                         static_cast<std::size_t>(i)] -= static_cast<float>(glm::dot(falls, sampleAt(grid, i, j)));
+    return grid;
+}
+
+HeightGrid Relief::withBall(const glm::dvec2& place, const glm::dvec2& lean) const {
+    HeightGrid grid = level(lean);
     const glm::dvec2 reach(4.0 * kBumpWidth);
     forSamples(grid, place - reach, place + reach, [&](std::size_t k, const glm::dvec2& sample) {
         const glm::dvec2 from = (sample - place) / kBumpWidth;

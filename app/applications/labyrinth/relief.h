@@ -18,10 +18,10 @@ public:
 
     Relief(const Level& level, const std::vector<Block>& blocks);
 
-    /// Of the level alone; device metres.
-    [[nodiscard]] const HeightGrid& level() const noexcept { return level_; }
+    /// Of the level alone, leant as by `boardTurn`; device metres.
+    [[nodiscard]] HeightGrid level(const glm::dvec2& lean = glm::dvec2(0.0)) const;
     /// With the ball at this place.
-    [[nodiscard]] HeightGrid withBall(const glm::dvec2& place) const;
+    [[nodiscard]] HeightGrid withBall(const glm::dvec2& place, const glm::dvec2& lean = glm::dvec2(0.0)) const;
 
 private:
     HeightGrid level_;

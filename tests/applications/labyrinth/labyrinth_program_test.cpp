@@ -200,9 +200,102 @@ TEST(LabyrinthProgram, TheBumpIsWithinAVoxelOfTheBall) {
         const glm::dvec2 at(ball.x, ball.z);
         if (program.game().fallen()) continue;
         ++looked;
-        ASSERT_LT(glm::distance(peakOf(grid, relief.level()), at), voxel) << k;
+        ASSERT_LT(glm::distance(peakOf(grid, relief.level(program.boardLean())), at), voxel) << k;
     }
     EXPECT_GT(looked, 3000);
+}
+
+TEST(LabyrinthProgram, TheBoardLeansAsItIsAskedToAndNotTwiceWithTheDevice) {
+    LabyrinthProgram program(3, bundledLevels());
+    Visit visit(program);
+    const auto placed = [&](double x, double z) { // of a place on the sheet
+        const SceneItem& board = visit.item(kLeaning);
+        return board.position + board.rotation * glm::vec3(x, 0.02, z);
+    };
+    const auto relief = [&](double x, double z) {
+        return heightAt(std::get<HeightGrid>(visit.content().target), {x, z}) -
+               heightAt(Relief(program.game().level(), program.game().blocks()).level(), {x, z});
+    };
+    visit.frame({{"key.right", 1.0}});
+    visit.frames(0.5);
+    EXPECT_NEAR(program.boardLean().x, 0.35 * 0.26, 0.002);
+    EXPECT_NEAR(placed(0.1, 0.0).y, 0.02F - 0.0091F, 3e-4F) << "the right side is down";
+    EXPECT_NEAR(placed(-0.1, 0.0).y, 0.02F + 0.0091F, 3e-4F);
+    EXPECT_NEAR(placed(0.0, 0.0).y, 0.02F, 1e-5F);
+    EXPECT_NEAR(relief(0.11, -0.06), -0.0100, 4e-4) << "and servos follow";
+    visit.frame({{"key.right", 0.0}, {"key.down", 1.0}});
+    visit.frames(0.5);
+    EXPECT_NEAR(placed(0.0, 0.07).y, 0.02F - 0.0064F, 3e-4F) << "the side towards the player";
+    visit.frame({{"key.down", 0.0}});
+    visit.lean(0.2F, 0.0F);
+    visit.frames(0.5);
+    EXPECT_GT(program.game().lean().y, 0.15) << "the tracked device leans";
+    EXPECT_NEAR(placed(0.0, 0.07).y, 0.02F, 3e-4F) << "and its picture with it, in its own frame";
+}
+
+/// Whether a point is in a block: on the inner side of its four sides, between underside and top.
+bool isInside(const Block& block, const glm::dvec3& at) {
+    for (std::size_t k = 0; k < 4; ++k) {
+        const glm::dvec2 from = block.outline[k], side = block.outline[(k + 1) % 4] - from;
+        const glm::dvec2 way = glm::dvec2(at.x, at.z) - from;
+        if (side.x * way.y - side.y * way.x < 0.0) return false;
+    }
+    const glm::dvec2 origin = block.outline[0], u = block.outline[1] - origin, v = block.outline[3] - origin;
+    const glm::dvec2 way = glm::dvec2(at.x, at.z) - origin;
+    const double det = u.x * v.y - u.y * v.x;
+    const double top = block.tops[0] + (way.x * v.y - way.y * v.x) / det * (block.tops[1] - block.tops[0]) +
+                       (u.x * way.y - u.y * way.x) / det * (block.tops[3] - block.tops[0]);
+    return at.y > block.bottom && at.y < top;
+}
+
+TEST(LabyrinthProgram, ABallBehindAWallIsSeenInFrontOfIt) {
+    const glm::dvec3 eye(0.05, 0.30, 0.45); // over the sheet
+    int hidden = 0, seen = 0;
+    for (const Level& level : bundledLevels()) {
+        const std::vector<Block> blocks = blocksOf(level);
+        for (int row = 0; row < level.rows; ++row)
+            for (int column = 0; column < level.columns; ++column) {
+                const glm::dvec2 centre = centreOf(level, {column, row});
+                const glm::dvec3 ball(centre.x, level.at({column, row}).height * level.step + kBallRadius, centre.y);
+                if (std::ranges::any_of(blocks, [&](const Block& block) { return isInside(block, ball); })) continue;
+                const glm::dvec3 way = glm::normalize(eye - ball);
+                double last = 0.0;
+                for (double gone = kBallRadius; gone < 0.1; gone += 1e-4)
+                    if (std::ranges::any_of(blocks,
+                                            [&](const Block& block) { return isInside(block, ball + gone * way); }))
+                        last = gone;
+                const double found = hiddenUpTo(blocks, ball, eye);
+                if (last > 0.0 && last < kBallRadius + 0.002) continue; // it touches the wall
+                EXPECT_NEAR(found, last, 0.0021) << level.name << " " << column << " " << row;
+                ++(last > 0.0 ? hidden : seen);
+            }
+    }
+    EXPECT_GT(hidden, 20);
+    EXPECT_GT(seen, 100);
+}
+
+TEST(LabyrinthProgram, WhatStandsForAHiddenBallIsAsLargeForTheEye) {
+    LabyrinthProgram program(1, bundledLevels());
+    Visit visit(program);
+    const glm::dvec3 eye(0.0, 0.28, 0.45);
+    visit.look(glm::vec3(eye));
+    int shown = 0;
+    for (int k = 0; k < 60 * 40; ++k) {
+        visit.frame();
+        const SceneItem& light = visit.item(kBehindItem);
+        if (!light.visible) continue;
+        ++shown;
+        const SceneItem& board = visit.item(kLeaning);
+        const auto seen = [&](const glm::vec3& place) {
+            return glm::dvec3(board.position + board.rotation * place) - eye;
+        };
+        const glm::dvec3 ball = seen(visit.item(kBallItem).position), there = seen(light.position);
+        EXPECT_LT(glm::length(there), glm::length(ball));
+        EXPECT_GT(glm::dot(glm::normalize(ball), glm::normalize(there)), std::cos(1e-3)) << "one behind the other";
+        EXPECT_NEAR(0.5 * static_cast<double>(light.scale.x) / glm::length(there), kBallRadius / glm::length(ball),
+                    1e-4);
+    }
+    EXPECT_GT(shown, 30) << "in 40 s of its own play";
 }
 
 double mean(const std::vector<double>& values) {
