@@ -25,6 +25,7 @@
 
 namespace lumorph {
 
+class PoseBoard;
 class ShowProgram;
 
 /// Milliseconds of each stage of one frame.
@@ -96,14 +97,16 @@ struct MatchFrame {
     std::shared_ptr<const Installation> installation; ///< of the wish
     std::shared_ptr<const SceneAssets> assets;
     double sceneSeconds = 0.0;
-    glm::mat4 worldFromDevice{1.0F};   ///< predicted for the moment at which the frame is seen
-    std::optional<glm::vec3> eye;      ///< of the viewer who is followed, predicted likewise; world metres
-    std::vector<Capsule> hands;        ///< that are tracked, with their arms, predicted likewise; world metres
-    std::string viewer;                ///< his name; empty for the scene's own eye
-    bool handingOver = false;          ///< the eye glides from one viewer to the next
-    std::vector<double> viewStrokes;   ///< what view dependence asks for; empty while it is off or servos rest
-    std::vector<double> unbentStrokes; ///< `wantedStrokes` without it; empty likewise
-    std::vector<double> splitStrokes;  ///< what the frequency split asks for; empty where servos follow none
+    glm::mat4 worldFromDevice{1.0F};        ///< predicted for the moment at which the frame is seen
+    std::optional<glm::vec3> eye;           ///< of the viewer who is followed, predicted likewise; world metres
+    std::vector<Capsule> hands;             ///< that are tracked, with their arms, predicted likewise; world metres
+    std::shared_ptr<const PoseBoard> poses; ///< they are from; empty: nothing is tracked
+    Microseconds lightTime{0};              ///< the moment for which they are predicted
+    std::string viewer;                     ///< his name; empty for the scene's own eye
+    bool handingOver = false;               ///< the eye glides from one viewer to the next
+    std::vector<double> viewStrokes;        ///< what view dependence asks for; empty while it is off or servos rest
+    std::vector<double> unbentStrokes;      ///< `wantedStrokes` without it; empty likewise
+    std::vector<double> splitStrokes;       ///< what the frequency split asks for; empty where servos follow none
 
     std::shared_ptr<const ShowProgram> program; ///< that was asked in this frame; empty: none
     double programSeconds = 0.0;                ///< its time, ShowMoment::seconds

@@ -1,15 +1,21 @@
 #include "core/loop/show_stage.h"
 
+#include <utility>
+
 #include "core/base/error.h"
 
 namespace lumorph {
 
 ShowFrame ShowStage::frame(const MatchFrame& match) {
+    return frame(match, {match.worldFromDevice, match.eye, match.hands, match.ms.latency});
+}
+
+ShowFrame ShowStage::frame(const MatchFrame& match, NewestView newest) {
     if (!match.scene || !match.installation || !match.assets)
         throw InvalidInput("show frame", "the loop's frame has no scene", "give the loop a scene with its assets");
     PoseInput input;
     input.seconds = match.sceneSeconds;
-    input.worldFromDevice = match.worldFromDevice;
+    input.worldFromDevice = newest.worldFromDevice;
     if (match.target) {
         // Triangles are the same at every time of an animation.
         input.targetMesh = {match.target, &match.target->solid.mesh};
@@ -23,9 +29,9 @@ ShowFrame ShowStage::frame(const MatchFrame& match) {
     frame.assets = match.assets;
     frame.rig = match.rig;
     frame.devicePositions = match.devicePositions;
-    frame.worldFromDevice = match.worldFromDevice;
-    frame.eye = match.eye;
-    frame.hands = match.hands;
+    frame.worldFromDevice = newest.worldFromDevice;
+    frame.eye = newest.eye;
+    frame.hands = std::move(newest.hands);
     return frame;
 }
 

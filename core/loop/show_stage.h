@@ -1,6 +1,7 @@
 #pragma once
 
 #include "core/loop/match_frame.h"
+#include "core/loop/viewer_stage.h"
 #include "core/scene/show_frame.h"
 
 namespace lumorph {
@@ -11,6 +12,8 @@ public:
     /// The frame must have a scene and assets. Where the scene shows the physical layer alone, the device's own surface
     /// is drawn in its material, whole, whatever light makes of it otherwise.
     [[nodiscard]] ShowFrame frame(const MatchFrame& match);
+    /// The same with device, viewer and hands as they were looked at anew.
+    [[nodiscard]] ShowFrame frame(const MatchFrame& match, NewestView newest);
 
 private:
     [[nodiscard]] std::shared_ptr<const Scene> shown(const std::shared_ptr<const Scene>& scene);

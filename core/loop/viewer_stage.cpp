@@ -16,20 +16,24 @@ namespace {
 /// What the board's streams say about one moment to come.
 class Outlook {
 public:
-    Outlook(const PoseBoard* board, double seconds, const Installation& installation, MatchFrame& frame)
+    /// Writes where the device and the hands are into the frame, for its `lightTime`.
+    Outlook(const PoseBoard* board, const Installation& installation, MatchFrame& frame)
         : installation_(installation), frame_(frame) {
-        const Microseconds then = frame.time + Microseconds(std::llround(1e6 * seconds));
         if (board)
-            for (const PoseBoard::Entry& entry : board->entries()) take(entry, then);
-        if (!tracked) return;
-        const double sinceSaid = 1e-3 * static_cast<double>(std::max(frame.time - oldest_, Microseconds{0}).count());
-        frame.ms.poseAge = sinceSaid + 1e3 * installation.trackerSeconds;
-        frame.ms.latency = std::min(sinceSaid + 1e3 * seconds, 1e3 * PoseStream::kFarthestAhead);
+            for (const PoseBoard::Entry& entry : board->entries()) take(entry, frame.lightTime);
+    }
+
+    /// Milliseconds from the oldest pose to the light.
+    [[nodiscard]] double latency() const {
+        if (!tracked) return 0.0;
+        const double ahead = 1e-3 * static_cast<double>((frame_.lightTime - oldest).count());
+        return std::clamp(ahead, 0.0, 1e3 * PoseStream::kFarthestAhead);
     }
 
     std::vector<TrackedHead> heads;
     bool headsExpected = false; ///< a tracker follows heads, whether it sees one or not
-    bool tracked = false;       ///< any body
+    bool tracked = false;       ///< any body but hands
+    Microseconds oldest = Microseconds::max();
 
 private:
     void take(const PoseBoard::Entry& entry, Microseconds then) {
@@ -39,7 +43,7 @@ private:
         if (entry.role == PoseRole::pointer) return addHand(*seen);
         tracked = true;
         const Pose pose = inRoom(installation_, entry.role, *seen);
-        if (const std::optional<PoseSample> sample = entry.stream->latest()) oldest_ = std::min(oldest_, sample->time);
+        if (const std::optional<PoseSample> sample = entry.stream->latest()) oldest = std::min(oldest, sample->time);
         if (entry.role == PoseRole::head)
             heads.push_back({entry.name, pose.position + pose.rotation * glm::dvec3(installation_.eyeFromHead)});
         if (entry.role == PoseRole::device) frame_.worldFromDevice = glm::mat4(matrixOf(pose));
@@ -52,7 +56,6 @@ private:
 
     const Installation& installation_;
     MatchFrame& frame_;
-    Microseconds oldest_ = Microseconds::max();
 };
 
 } // namespace
@@ -70,7 +73,15 @@ double lookAhead(const Installation& installation, double lightDelay) {
 void ViewerStage::look(const MatchWish& wish, double sinceLast, MatchFrame& frame) {
     const Installation& installation = *wish.installation;
     frame.worldFromDevice = installation.worldFromDevice;
-    const Outlook outlook(wish.poses.get(), lookAhead(installation, wish.lightDelay), installation, frame);
+    frame.poses = wish.poses;
+    frame.lightTime = frame.time + Microseconds(std::llround(1e6 * lookAhead(installation, wish.lightDelay)));
+    const Outlook outlook(wish.poses.get(), installation, frame);
+    if (outlook.tracked) {
+        const double sinceSaid =
+            1e-3 * static_cast<double>(std::max(frame.time - outlook.oldest, Microseconds{0}).count());
+        frame.ms.poseAge = sinceSaid + 1e3 * installation.trackerSeconds;
+        frame.ms.latency = outlook.latency();
+    }
     const glm::dvec3 centre(frame.worldFromDevice[3]);
     const std::optional<ViewerDirector::View> view =
         director_.step(outlook.heads, centre, installation.viewer, sinceLast);
@@ -82,6 +93,23 @@ void ViewerStage::look(const MatchWish& wish, double sinceLast, MatchFrame& fram
         frame.eye = installation.eye;
     }
     moves_ = outlook.tracked || !frame.hands.empty();
+}
+
+NewestView newestView(const MatchFrame& frame) {
+    NewestView view{frame.worldFromDevice, frame.eye, frame.hands, frame.ms.latency};
+    if (!frame.poses || !frame.installation) return view;
+    MatchFrame late;
+    late.time = frame.time;
+    late.lightTime = frame.lightTime;
+    late.worldFromDevice = frame.worldFromDevice;
+    const Outlook outlook(frame.poses.get(), *frame.installation, late);
+    view.worldFromDevice = late.worldFromDevice;
+    view.hands = std::move(late.hands);
+    view.latency = outlook.latency();
+    const auto viewer = std::ranges::find(outlook.heads, frame.viewer, &TrackedHead::name);
+    if (frame.eye && !frame.handingOver && !frame.viewer.empty() && viewer != outlook.heads.end())
+        view.eye = glm::vec3(viewer->eye);
+    return view;
 }
 
 bool anyTracked(const PoseBoard& board, Microseconds now) {

@@ -119,13 +119,15 @@ void ShowDrawer::Data::dropUnwanted(const ShowRequest& request) {
     });
 }
 
-/// Posing costs a millisecond or two. It is done here, not in the loop: the loop makes more frames than are drawn, and
-/// must not wait; the window's thread must wait even less.
+/// Posing costs a millisecond or two. It is done here, by the poses of now, not in the loop: the loop makes more frames
+/// than are drawn, and must not wait; the window's thread must wait even less.
 void ShowDrawer::Data::pose(const ShowPace::Work& work) {
     const auto from = Clock::now();
     drawn = {};
     drawn.match = work.request.match;
-    drawn.frame = std::make_shared<ShowFrame>(stage.frame(*work.request.match));
+    const NewestView newest = newestView(*work.request.match);
+    drawn.ms.latency = newest.latency;
+    drawn.frame = std::make_shared<ShowFrame>(stage.frame(*work.request.match, newest));
     drawn.resolution = work.resolution;
     drawn.still = work.still || work.resolution >= 1.0;
     drawn.ms.pose = since(from);

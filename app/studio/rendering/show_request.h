@@ -55,6 +55,7 @@ struct ShowRequest {
 
 /// Milliseconds of the stages of one drawn frame.
 struct ShowTimes {
+    double latency = 0.0; ///< from the oldest pose used to the light, as it was predicted; 0: nothing is tracked
     double pose = 0.0, upload = 0.0, shadow = 0.0, eye = 0.0, projectors = 0.0, lab = 0.0, readBack = 0.0, total = 0.0;
 };
 

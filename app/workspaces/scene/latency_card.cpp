@@ -11,7 +11,7 @@ constexpr int kMilliseconds = 250; // nobody reads faster
 constexpr int kLine = 18;
 constexpr int kLatencyPadding = 12;
 constexpr int kWidth = 200;
-constexpr int kLines = 16;
+constexpr int kLines = 17;
 
 } // namespace
 
@@ -48,6 +48,7 @@ std::vector<LatencyCard::Line> LatencyCard::linesOf(const ShowFeed& feed) {
             {tr("Read back"), show.readBack, ms},
             {tr("End to end"), loop.poseAge + feed.endToEnd(), ms},
             {tr("Looked ahead"), loop.latency, ms},
+            {tr("By newest pose"), show.latency, ms},
             {tr("Pictures"), feed.rate(), tr("/s")},
             {tr("Resolution"), 100.0 * newest.resolution, tr("%")}};
 }

@@ -232,6 +232,46 @@ TEST_F(SceneLoopTest, DeviceAndHeadArePredictedForTheMomentOfTheLight) {
     EXPECT_TRUE(loop_.settled());
 }
 
+TEST_F(SceneLoopTest, WhatWaitsToBeDrawnIsPredictedAnewFromTheNewestPose) {
+    SceneInRoom scene = emptyScene();
+    scene.predictionSeconds = 0.083;
+    MatchWish wish = wishWith(scene);
+    const auto board = std::make_shared<PoseBoard>();
+    wish.poses = board;
+    const auto device = board->stream("tablet", PoseRole::device);
+    const auto head = board->stream("Ada", PoseRole::head);
+    // A hand that turns back and forth: prediction is wrong where it turns.
+    const auto x = [](double t) { return 0.06 * std::sin(5.0 * t); };
+    const auto push = [&] {
+        const double t = 1e-6 * static_cast<double>(clock_.now().count());
+        ASSERT_TRUE(device->push({clock_.now(), true, {{x(t), 0.1, 0.0}, {1, 0, 0, 0}}}));
+        ASSERT_TRUE(head->push({clock_.now(), true, {{0.0, 0.5, 0.4 + x(t)}, {1, 0, 0, 0}}}));
+        clock_.advance(Microseconds{8'000});
+    };
+    double early = 0.0, late = 0.0;
+    for (int k = 0; k < 200; ++k) {
+        push();
+        const auto frame = loop_.step(wish, 0.008);
+        if (k < 60) continue;
+        const NewestView same = newestView(*frame);
+        EXPECT_EQ(same.worldFromDevice, frame->worldFromDevice) << "nothing newer is known";
+        EXPECT_EQ(same.eye, frame->eye);
+        const double then = 1e-6 * static_cast<double>(frame->lightTime.count());
+        EXPECT_NEAR(then, 1e-6 * static_cast<double>(frame->time.count()) + 0.083, 1e-6);
+        for (int waits = 0; waits < 4; ++waits) push(); // 32 ms, until it is drawn
+        const NewestView newest = newestView(*frame);
+        EXPECT_NEAR(frame->ms.latency - newest.latency, 32.0, 1e-6);
+        early += std::pow(static_cast<double>(frame->worldFromDevice[3].x) - x(then), 2.0);
+        late += std::pow(static_cast<double>(newest.worldFromDevice[3].x) - x(then), 2.0);
+        ASSERT_TRUE(newest.eye);
+        EXPECT_NEAR(newest.eye->z - 0.4F, newest.worldFromDevice[3].x, 1e-3);
+        const ShowFrame shown = ShowStage().frame(*frame, newest);
+        EXPECT_EQ(shown.worldFromDevice, newest.worldFromDevice);
+        EXPECT_EQ(shown.eye, newest.eye);
+    }
+    EXPECT_LT(std::sqrt(late), 0.6 * std::sqrt(early));
+}
+
 TEST_F(SceneLoopTest, HandsArePredictedForTheMomentOfTheLightToo) {
     SceneInRoom scene = emptyScene();
     scene.predictionSeconds = 0.06;
