@@ -6,6 +6,7 @@
 #include <numbers>
 #include <optional>
 #include <ostream>
+#include <span>
 #include <utility>
 
 #include <nlohmann/json.hpp>
@@ -13,6 +14,7 @@
 #include "app/applications/program_start.h"
 #include "app/output/picture_pair.h"
 #include "app/output/video_writer.h"
+#include "app/sound/sound_mixer.h"
 #include "core/base/error.h"
 #include "core/base/statistics.h"
 #include "core/loop/bend_comparison.h"
@@ -70,6 +72,24 @@ MatchWish completeWish(const ProjectContents& contents, const std::shared_ptr<Sh
     return wish;
 }
 
+/// What a show lets be heard, for a film of it.
+class FilmSound {
+public:
+    FilmSound() { mixer_.setBoard(std::make_shared<const SoundBoard>(SoundBoard::synthesised())); }
+
+    /// That of one step of the show.
+    [[nodiscard]] std::span<const std::int16_t> step(std::span<const ShowSound> sounds) {
+        mixer_.play(sounds);
+        mixer_.mix(samples_);
+        return samples_;
+    }
+
+private:
+    SoundMixer mixer_;
+    std::vector<std::int16_t> samples_ =
+        std::vector<std::int16_t>(2 * static_cast<std::size_t>(std::lround(ShowPlayer::kStep * kSoundRate)));
+};
+
 /// A show, drawn and measured step by step.
 class Recorder {
 public:
@@ -92,6 +112,7 @@ public:
         if (player_.wish().inputs) giveInputs(seconds);
         const auto begun = Clock::now();
         const MatchFrame& frame = *player_.step();
+        sounds_ = frame.sounds;
         if (!frame.programError.empty()) programError_ = frame.programError;
         if (frame.keepsake) keepsake_ = frame.keepsake;
         loopTimes_.push_back(since(begun));
@@ -108,6 +129,9 @@ public:
         finishFrame(begun);
         return picture;
     }
+
+    /// Of the newest step.
+    [[nodiscard]] const std::vector<ShowSound>& sounds() const noexcept { return sounds_; }
 
     void savePictures(const fs::path& folder) {
         const ShowFrame frame = player_.shown();
@@ -185,6 +209,7 @@ private:
     const InputScript& inputs_;
     std::size_t given_ = 0;
     std::string programError_;
+    std::vector<ShowSound> sounds_;
     std::function<std::string()> keepsake_;
     ManualClock clock_;
     ShowPlayer player_;
@@ -205,13 +230,18 @@ ShowRates playShow(const ProjectContents& contents, const std::string& name, con
                            "give a number in that range");
     Recorder recorder(contents, name, show, script, progress.part(0.0, 0.2));
     std::optional<VideoWriter> writer;
-    if (!video.empty()) writer.emplace(video, show.video, 1.0 / (ShowPlayer::kStep * kStepsAPicture));
+    std::optional<FilmSound> sound;
+    if (!video.empty()) {
+        writer.emplace(video, show.video, 1.0 / (ShowPlayer::kStep * kStepsAPicture));
+        sound.emplace();
+    }
     const int steps = std::max(kStepsAPicture, static_cast<int>(std::lround(show.seconds / ShowPlayer::kStep)));
     const Progress drawing = progress.part(0.2, 1.0);
     for (int k = 0; k < steps; ++k) {
         drawing.throwIfCancelled();
         drawing.report(static_cast<double>(k) / steps, "drawing the show");
         recorder.step();
+        if (sound) writer->addSound(sound->step(recorder.sounds()));
         if (k == steps / 2 && !pictures.empty()) recorder.savePictures(pictures);
         if (k % kStepsAPicture != 0) continue;
         const bool last = !show.last.empty() && k + kStepsAPicture >= steps;

@@ -7,6 +7,8 @@
 #include <optional>
 #include <string>
 #include <system_error>
+#include <utility>
+#include <vector>
 
 #include <fcntl.h>
 #include <unistd.h>
@@ -14,6 +16,8 @@
 #include <opencv2/core.hpp>
 #include <opencv2/videoio.hpp>
 
+#include "app/output/sound_track.h"
+#include "app/sound/synthesis.h"
 #include "core/base/error.h"
 
 namespace lumorph {
@@ -45,6 +49,9 @@ public:
     }
     Unnamed(const Unnamed&) = delete;
     Unnamed& operator=(const Unnamed&) = delete;
+    Unnamed(Unnamed&& other) noexcept
+        : beside_(std::exchange(other.beside_, {})), descriptor_(std::exchange(other.descriptor_, -1)) {}
+    Unnamed& operator=(Unnamed&&) = delete;
 
     /// A name with the ending by which the encoder knows the kind of file, for it to open; `opened` takes it away.
     [[nodiscard]] std::string nameForEncoder() const {
@@ -125,6 +132,7 @@ struct VideoWriter::Data {
     glm::ivec2 size{0};
     cv::VideoWriter writer;
     cv::Mat picture;
+    std::vector<std::int16_t> sound;
     int frames = 0;
 };
 
@@ -166,6 +174,10 @@ void VideoWriter::add(const Image& frame) {
     ++data_->frames;
 }
 
+void VideoWriter::addSound(std::span<const std::int16_t> samples) {
+    data_->sound.insert(data_->sound.end(), samples.begin(), samples.end());
+}
+
 int VideoWriter::frames() const noexcept { return data_->frames; }
 
 void VideoWriter::finish() {
@@ -175,6 +187,14 @@ void VideoWriter::finish() {
     // The encoder keeps quiet about a disk that refuses; what counts is what can be read again.
     if (!holds(data_->written->content(), data_->frames, data_->size))
         failIncomplete(data_->file, data_->written->beside());
+    if (std::ranges::any_of(data_->sound, [](std::int16_t sample) { return sample != 0; })) {
+        Unnamed whole(data_->file);
+        const std::string name = whole.nameForEncoder();
+        addSoundTrack(data_->written->content(), data_->sound, kSoundRate, name);
+        whole.opened();
+        if (!holds(whole.content(), data_->frames, data_->size)) failIncomplete(data_->file, whole.beside());
+        data_->written.emplace(std::move(whole));
+    }
     if (const std::error_code error = data_->written->moveTo(data_->file))
         throw DeviceError(data_->file.string(), "cannot be written: " + error.message(),
                           "choose another place, or check its permissions");

@@ -1,7 +1,9 @@
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <span>
 
 #include <glm/vec2.hpp>
 
@@ -25,6 +27,9 @@ public:
 
     /// Appends one frame of exactly the video's size; alpha is left out. Throws InvalidInput for another size.
     void add(const Image& frame);
+    /// Appends sound, which begins with the first frame: left and right by turns, `kSoundRate` a second. A video in
+    /// which nothing is heard gets no track.
+    void addSound(std::span<const std::int16_t> samples);
     [[nodiscard]] int frames() const noexcept;
 
     /// Closes the file, looks whether it opens again with every frame in it, and gives it its name. Throws DeviceError

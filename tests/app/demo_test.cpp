@@ -53,6 +53,18 @@ TEST(Demo, IsPlayedWithoutAWindowIntoAVideo) {
     EXPECT_GT(color[0], color[2]) << "and is blue";
 }
 
+TEST(Demo, FilmHasTheSoundOfItsApplication) {
+    const TemporaryFolder folder;
+    const auto tracks = [&](const std::string& demo) {
+        const std::string video = (folder / (demo + ".mp4")).string();
+        EXPECT_EQ(lumorph({"demo", demo, "--seconds", "0.3", "--record", video}).exitCode, 0);
+        const std::string bytes = readFile(video);
+        return std::pair(bytes.find("vide") != std::string::npos, bytes.find("mp4a") != std::string::npos);
+    };
+    EXPECT_EQ(tracks("ambient"), std::pair(true, true)) << "wind and waves";
+    EXPECT_EQ(tracks("techniques"), std::pair(true, false)) << "which says nothing";
+}
+
 TEST(Demo, EndsAtTheFirstSignalAndLeavesNoFilm) {
     for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
         const TemporaryFolder folder;

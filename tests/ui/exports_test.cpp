@@ -25,8 +25,64 @@
 #include "tests/support/cut_tablet.h"
 #include "tests/support/small_rigs.h"
 
+extern "C" {
+#include <libavcodec/avcodec.h>
+#include <libavformat/avformat.h>
+}
+
 namespace lumorph::studio {
 namespace {
+
+/// What a player hears of an MP4: samples of each channel.
+struct HeardFilm {
+    int rate = 0;
+    std::vector<std::vector<float>> channels;
+};
+
+/// Empty channels where it has no sound.
+HeardFilm heardIn(const std::string& file) {
+    HeardFilm heard;
+    AVFormatContext* film = nullptr;
+    if (avformat_open_input(&film, file.c_str(), nullptr, nullptr) < 0) return heard;
+    avformat_find_stream_info(film, nullptr);
+    const AVCodec* codec = nullptr;
+    const int stream = av_find_best_stream(film, AVMEDIA_TYPE_AUDIO, -1, -1, &codec, 0);
+    if (stream >= 0) {
+        AVCodecContext* decoder = avcodec_alloc_context3(codec);
+        avcodec_parameters_to_context(decoder, film->streams[stream]->codecpar);
+        avcodec_open2(decoder, codec, nullptr);
+        heard.rate = decoder->sample_rate;
+        heard.channels.resize(static_cast<std::size_t>(decoder->ch_layout.nb_channels));
+        AVPacket* packet = av_packet_alloc();
+        AVFrame* frame = av_frame_alloc();
+        for (bool more = true; more;) {
+            more = av_read_frame(film, packet) >= 0;
+            if (more && packet->stream_index != stream) {
+                av_packet_unref(packet);
+                continue;
+            }
+            avcodec_send_packet(decoder, more ? packet : nullptr);
+            av_packet_unref(packet);
+            while (avcodec_receive_frame(decoder, frame) >= 0)
+                for (std::size_t c = 0; c < heard.channels.size(); ++c) {
+                    const auto* samples = reinterpret_cast<const float*>(frame->extended_data[c]);
+                    heard.channels[c].insert(heard.channels[c].end(), samples, samples + frame->nb_samples);
+                }
+        }
+        av_frame_free(&frame);
+        av_packet_free(&packet);
+        avcodec_free_context(&decoder);
+    }
+    avformat_close_input(&film);
+    return heard;
+}
+
+/// Hertz of a tone, by how often it goes through zero.
+double pitchOf(const std::vector<float>& samples, int rate) {
+    int crossings = 0;
+    for (std::size_t k = 1; k < samples.size(); ++k) crossings += samples[k - 1] < 0.0F && samples[k] >= 0.0F ? 1 : 0;
+    return static_cast<double>(crossings) * rate / static_cast<double>(samples.size());
+}
 
 namespace fs = std::filesystem;
 
@@ -103,6 +159,38 @@ Video videoOf(const fs::path& path) {
         video.means.push_back(cv::mean(picture));
     }
     return video;
+}
+
+TEST_F(Exports, FilmWithSoundIsHeardAsItWasGiven) {
+    constexpr int kRate = 48'000;
+    VideoWriter writer(file("tones.mp4"), {64, 48}, 30.0);
+    for (int k = 0; k < 60; ++k) {
+        writer.add(Image({64, 48}, {static_cast<std::uint8_t>(4 * k), 40, 90, 255}));
+        std::vector<std::int16_t> samples;
+        for (int i = 0; i < kRate / 30; ++i) {
+            const double t = (k * (kRate / 30) + i) / static_cast<double>(kRate);
+            samples.push_back(static_cast<std::int16_t>(9000.0 * std::sin(2.0 * std::numbers::pi * 440.0 * t)));
+            samples.push_back(static_cast<std::int16_t>(3000.0 * std::sin(2.0 * std::numbers::pi * 990.0 * t)));
+        }
+        writer.addSound(samples);
+    }
+    writer.finish();
+    EXPECT_THAT(files(), testing::ElementsAre("tones.mp4")) << "and nothing beside it";
+    cv::VideoCapture shown(file("tones.mp4").string(), cv::CAP_FFMPEG);
+    EXPECT_EQ(shown.get(cv::CAP_PROP_FRAME_COUNT), 60.0);
+    EXPECT_NEAR(shown.get(cv::CAP_PROP_FPS), 30.0, 0.01);
+    const HeardFilm heard = heardIn(file("tones.mp4").string());
+    ASSERT_EQ(heard.channels.size(), 2U);
+    EXPECT_EQ(heard.rate, kRate);
+    for (const auto& channel : heard.channels) EXPECT_NEAR(static_cast<double>(channel.size()) / kRate, 2.0, 0.06);
+    EXPECT_NEAR(pitchOf(heard.channels[0], kRate), 440.0, 14.0) << "left";
+    EXPECT_NEAR(pitchOf(heard.channels[1], kRate), 990.0, 30.0) << "right";
+
+    VideoWriter silent(file("silent.mp4"), {64, 48}, 30.0);
+    silent.add(Image({64, 48}, {10, 40, 90, 255}));
+    silent.addSound(std::vector<std::int16_t>(3200, 0));
+    silent.finish();
+    EXPECT_TRUE(heardIn(file("silent.mp4").string()).channels.empty());
 }
 
 TEST_F(Exports, AShapeReadBackIsTheDeformedRigInEveryFormat) {

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "app/studio/sound/sound_mixer.h"
+#include "app/sound/sound_mixer.h"
 #include "core/show/project_contents.h"
 #include "core/show/show_player.h"
 #include "tests/ui/studio_window.h"

@@ -20,6 +20,7 @@ constexpr float kEm = 56.0F, kPadding = 30.0F, kPlateRound = 40.0F;
 constexpr double kShortestPole = 0.012, kPlateStep = 1.12 * Labels::kPlateHeight; ///< metres
 constexpr int kPlateSteps = 4;                                                    ///< by which a plate may stand higher
 constexpr double kFades = 0.22;                                                   ///< seconds
+constexpr double kBefore = 0.055;                                                 ///< metres before all that stands
 constexpr double kPoleWidth = 0.0005;                                             ///< metres
 constexpr double kNamedTo = 9.0;  ///< times its own width a view may be and still name a place
 constexpr double kInside = 0.003; ///< metres from the rim within which a place has a name
@@ -157,6 +158,10 @@ void Labels::arrange(const Map& map, const ViewGround& ground, const glm::dvec3&
         if (std::abs(plate.opacity - goal) < 0.02) plate.opacity = goal;
         plate.middle = plate.foot + glm::dvec3(0.0, kShortestPole + plate.lift, 0.0);
         plate.rotation = glm::quat(facing(plate.middle, eye));
+        const double far = glm::distance(eye, plate.middle);
+        const double share = std::min(kBefore / std::max(far, 1e-9), 0.5);
+        plate.before = glm::mix(plate.middle, eye, share);
+        plate.size = 1.0 - share;
     }
 }
 
@@ -166,7 +171,8 @@ void Labels::show(Scene& scene) const {
         const int id = kFirstLabel + 2 * static_cast<int>(plate.place);
         SceneItem sheet =
             demoItem(id, "Label", MeshItem{.model = plate.writing().model, .animation = -1, .ownMaterials = false});
-        sheet.position = plate.middle;
+        sheet.position = plate.before;
+        sheet.scale = glm::vec3(static_cast<float>(plate.size));
         sheet.rotation = plate.rotation;
         sheet.material = plate.writing().material;
         sheet.opacity = static_cast<float>(plate.opacity);

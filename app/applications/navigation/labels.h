@@ -56,6 +56,8 @@ private:
         [[nodiscard]] const Writing& writing() const noexcept { return writings[static_cast<std::size_t>(language)]; }
 
         glm::dvec3 foot{0.0}, middle{0.0};
+        glm::dvec3 before{0.0}; ///< on the way from the middle to the eye: there no house hides it
+        double size = 1.0;      ///< by which it is as large for the eye there
         glm::quat rotation{1.0F, 0.0F, 0.0F, 0.0F};
         double opacity = 0.0, lift = 0.0; ///< metres over its pole's shortest
         bool wanted = false;

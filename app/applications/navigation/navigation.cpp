@@ -86,12 +86,7 @@ void addCloud(Scene& scene, const glm::dvec2& at) {
 }
 
 glm::dvec3 eyeOf(const ShowMoment& moment) {
-    glm::dvec3 eye(moment.installation->eye);
-    for (const ShowBody& body : moment.bodies)
-        if (body.role == PoseRole::head) {
-            eye = glm::dvec3(matrixOf(body.pose) * glm::dvec4(glm::dvec3(moment.installation->eyeFromHead), 1.0));
-            break;
-        }
+    const glm::dvec3 eye(moment.eye.value_or(moment.installation->eye));
     return glm::dvec3(glm::inverse(glm::dmat4(moment.worldFromDevice)) * glm::dvec4(eye, 1.0));
 }
 

@@ -2,7 +2,7 @@
 
 #include <memory>
 
-#include "app/studio/sound/sound_mixer.h"
+#include "app/sound/sound_mixer.h"
 
 namespace lumorph::studio {
 

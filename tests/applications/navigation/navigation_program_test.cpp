@@ -185,7 +185,7 @@ TEST(NavigationProgram, LabelsAreReadFromAllFourSides) {
     for (int side = 0; side < 4; ++side) {
         const double angle = 1.5707963 * side;
         const glm::dvec3 eye(0.55 * std::sin(angle), 0.45, 0.55 * std::cos(angle));
-        visit.see({ShowBody{"Head", PoseRole::head, {eye, {1.0, 0.0, 0.0, 0.0}}}});
+        visit.look(glm::vec3(eye));
         visit.frames(1.0);
         for (const SceneItem& item : visit.content().scene->items) {
             if (item.name != "Label" || item.opacity < 0.9F) continue;

@@ -1,4 +1,4 @@
-#include "app/studio/sound/synthesis.h"
+#include "app/sound/synthesis.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "app/studio/sound/sound_board.h"
+#include "app/sound/sound_board.h"
 
 #include <algorithm>
 #include <array>

@@ -1,4 +1,4 @@
-#include "app/studio/sound/sound_mixer.h"
+#include "app/sound/sound_mixer.h"
 
 #include <algorithm>
 #include <cmath>

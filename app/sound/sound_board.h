@@ -4,7 +4,7 @@
 #include <string_view>
 #include <vector>
 
-#include "app/studio/sound/synthesis.h"
+#include "app/sound/synthesis.h"
 
 namespace lumorph {
 

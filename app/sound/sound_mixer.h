@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "app/studio/sound/sound_board.h"
+#include "app/sound/sound_board.h"
 #include "core/loop/show_sound.h"
 
 namespace lumorph {
