@@ -40,6 +40,7 @@ struct Table {
     cv::Mat shown;
     std::vector<std::vector<double>> photographed; ///< strokes, one a bend
     std::optional<CheckLab> lab;
+    int looks = 0, bumpFrom = 0, bumpTo = 0; ///< somebody knocks against the camera in looks from .. to
     std::shared_ptr<ManualClock> clock = std::make_shared<ManualClock>();
 
     cv::Mat look() {
@@ -51,7 +52,14 @@ struct Table {
             lab.emplace(truth, rig, now, CheckLabOptions{}, 7);
         }
         const glm::ivec2 size = truth.projectors.front().camera.size;
-        return lab->photograph(0, shown.empty() ? cv::Mat::zeros(size.y, size.x, CV_8U) : shown);
+        cv::Mat picture = lab->photograph(0, shown.empty() ? cv::Mat::zeros(size.y, size.x, CV_8U) : shown);
+        ++looks;
+        if (looks < bumpFrom || looks >= bumpTo) return picture;
+        constexpr int kRight = 9, kDown = 5; // pixels
+        const cv::Size kept(picture.cols - kRight, picture.rows - kDown);
+        cv::Mat knocked = picture.clone();
+        picture(cv::Rect({0, 0}, kept)).copyTo(knocked(cv::Rect({kRight, kDown}, kept)));
+        return knocked;
     }
 };
 
@@ -161,9 +169,11 @@ TEST_F(TableBenchTest, ACheckStandsTheServosInBendsAndTellsWhatHasMoved) {
     const Installation believed = tableRoom();
     const Rig& rig = *window.state().rig.rig;
     Table table(rig, pushed(believed, rig, parseLabPush("projector:3mm", rig), 1));
+    table.bumpFrom = 5;
+    table.bumpTo = 8;
     std::string trouble;
     const auto found = check(table, believed, trouble);
-    ASSERT_TRUE(found) << trouble;
+    ASSERT_TRUE(found) << "what was disturbed once is photographed again; " << trouble;
     EXPECT_EQ(opened, "/dev/video9");
     EXPECT_EQ(found->check.verdict, RoomCheck::Verdict::moved) << found->check.sentence;
     ASSERT_EQ(found->check.names.size(), 1U);

@@ -21,6 +21,8 @@ namespace lumorph::studio {
 namespace {
 
 constexpr int kAskMilliseconds = 30;
+constexpr int kTries = 3;                                // at a photograph that was disturbed
+constexpr auto kCalms = std::chrono::milliseconds(700);  // before the next
 constexpr auto kStands = std::chrono::milliseconds(400); // after the last command nothing trembles any more
 constexpr auto kPause = std::chrono::milliseconds(20);
 
@@ -61,6 +63,11 @@ private:
     QPointer<DeviceService> devices_;
     std::shared_ptr<Driven> driven_;
 };
+
+/// Something that may be over when one looks again.
+bool isPassing(Cause cause) {
+    return cause == Cause::rigMoved || cause == Cause::lateFrame || cause == Cause::exposureDrifts;
+}
 
 /// Deleted in the window's thread, whoever lets go of it last.
 template <class Owned> std::shared_ptr<Owned> ownedByWindow(std::unique_ptr<Owned> owned) {
@@ -118,10 +125,17 @@ public:
             settings.clock = clock_;
             capture = std::make_unique<PoseCapture>(camera(), *lit->second, std::move(settings));
         }
-        progress.report(0.0, "photographing");
-        CapturedPose pose = capture->capture("check", progress);
-        if (!pose.isSound()) throw CaptureRefused(*pose.findings.refusal);
-        return std::move(pose.images);
+        // Whoever measures for minutes, alone, is not to begin anew for somebody who walked past once.
+        for (int left = kTries - 1;; --left) {
+            progress.report(0.0, "photographing");
+            CapturedPose pose = capture->capture("check", progress);
+            if (pose.isSound()) return std::move(pose.images);
+            if (left == 0 || !isPassing(pose.findings.refusal->cause)) throw CaptureRefused(*pose.findings.refusal);
+            for (auto calm = std::chrono::milliseconds{0}; calm < kCalms; calm += kPause) {
+                progress.throwIfCancelled();
+                std::this_thread::sleep_for(kPause);
+            }
+        }
     }
 
 private:
