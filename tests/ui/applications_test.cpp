@@ -323,7 +323,11 @@ TEST_F(ApplicationsWindow, OfWhichNoneCanBeShownLeaveAQuietPageInTheKiosk) {
 TEST_F(ApplicationsWindow, CompareTheBendInTwoHalvesInTheVisitorsLanguage) {
     window.command("Applications");
     window.click("applications.navigation");
+    EXPECT_TRUE(eventually([&] { return layer().openingShown() && layer().isVisible(); }, 30s))
+        << "a map takes its time, and what showed before is veiled";
+    window.screenshot("navigation-opening", 0ms);
     ASSERT_TRUE(eventually([&] { return shows("navigation"); }, 60s));
+    EXPECT_FALSE(layer().openingShown());
     QTest::keyClick(&eye(), Qt::Key_O);
     auto* without = window.find<ViewPane>("scene.cropped");
     auto* with = window.find<ViewPane>("scene.uncropped");

@@ -15,6 +15,7 @@ namespace lumorph::studio {
 namespace {
 
 constexpr int kBarMargin = 16;
+constexpr int kOpensAtOnce = 200;             ///< milliseconds
 constexpr auto kPlace = "visitors";           ///< of notices
 constexpr Microseconds kAsksAgain{2'000'000}; ///< for a file that may be back
 
@@ -54,6 +55,8 @@ VisitorDesk::VisitorDesk(Studio& studio, QMainWindow& window, QWidget& stage, co
     connect(&watch_, &VisitorWatch::ticked, this, &VisitorDesk::askAgain);
     connect(&studio.project, &ProjectService::demoFailed, this, &VisitorDesk::takeFailure);
     connect(&studio.loop, &StudioLoop::failed, this, &VisitorDesk::takeEnd);
+    for (const auto happened : {&Jobs::progressed, &Jobs::finished})
+        connect(&studio.jobs, happened, this, &VisitorDesk::followOpening);
     connect(bar_, &VisitorBar::cardsWanted, this, &VisitorDesk::showCards);
     connect(bar_, &VisitorBar::helpWanted, this, [this] { layer_->setHelp(!layer_->helpShown()); });
 }
@@ -70,7 +73,24 @@ void VisitorDesk::setMode(Mode mode) {
 
 bool VisitorDesk::offers() const { return studio_.project.demo() != nullptr; }
 
+void VisitorDesk::wantApplication(const Demo& demo) {
+    opening_ = &demo;
+    openingSince_.start();
+    emit applicationWanted(demo);
+}
+
+/// What opens at once needs no veil.
+void VisitorDesk::followOpening() {
+    if (mode_ == Mode::studio) opening_ = nullptr;
+    const auto jobs = studio_.jobs.running();
+    const auto job = std::ranges::find(jobs, QString("project"), &Jobs::Status::place);
+    if (opening_ == nullptr || job == jobs.end()) return layer_->endOpening();
+    if (openingSince_.elapsed() > kOpensAtOnce) layer_->setOpening(opening_->title, job->fraction);
+}
+
 void VisitorDesk::takeOpened() {
+    opening_ = nullptr;
+    followOpening();
     chosen_ = broken_ = false;
     played_ = studio_.loop.program() != nullptr;
     setResting(false);
@@ -130,7 +150,7 @@ void VisitorDesk::showCards() {
     connect(cards_, &ApplicationsPage::chosen, this, [this](const Demo& demo) {
         hideCards();
         chosen_ = true;
-        emit applicationWanted(demo);
+        wantApplication(demo);
     });
     connect(cards_, &ApplicationsPage::studioWanted, this, [this] {
         hideCards();
@@ -216,7 +236,7 @@ void VisitorDesk::goOn() {
     if (studio_.loop.stopped() || studio_.document.modified()) return; // neither is an application's to end
     hideCards();
     chosen_ = false;
-    emit applicationWanted(*next);
+    wantApplication(*next);
 }
 
 /// Where nothing can be shown: a file may be back, or enough time may have passed.
@@ -226,6 +246,8 @@ void VisitorDesk::askAgain() {
 
 /// Who has chosen it as a host reads the notice in the studio; a visitor chooses another. Else the next is tried.
 void VisitorDesk::takeFailure(const QString& name, const Notice& why) {
+    opening_ = nullptr;
+    followOpening();
     const bool chosen = std::exchange(chosen_, false);
     if (mode_ == Mode::studio) return;
     if (mode_ == Mode::full && chosen) return emit studioWanted();

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <QElapsedTimer>
 #include <QMainWindow>
 #include <QPointer>
 
@@ -60,6 +61,8 @@ private:
     void arrange();
     void giveKeyboard();
     void goOnWhereNobodyPlays();
+    void wantApplication(const Demo& demo);
+    void followOpening();
     void takeFailure(const QString& name, const Notice& why);
     void takeEnd(const QString& why);
     void leaveOut(const Demo& demo, const Notice& why);
@@ -79,6 +82,8 @@ private:
     VisitorBar* bar_;
     RestPage* rest_;
     QPointer<ApplicationsPage> cards_;
+    const Demo* opening_ = nullptr; ///< that was wanted last, until it is there
+    QElapsedTimer openingSince_;
     bool chosen_ = false;       ///< somebody chose what is being opened; else its turn has come
     bool broken_ = false;       ///< what should show does not
     bool played_ = false;       ///< what was opened last answers visitors

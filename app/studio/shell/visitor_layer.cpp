@@ -21,9 +21,11 @@ constexpr double kWayLarge = 84.0;
 constexpr double kHand = 76.0;
 constexpr double kCaptionWidth = 420.0;
 constexpr double kKeyRow = 34.0;
+constexpr double kBarWidth = 320.0;
 
 const QColor kInk(255, 255, 255);
 const QColor kPlate(14, 18, 22, 168); ///< pictures are of any brightness
+const QColor kVeil(14, 18, 22, 240);  ///< over what is no longer true
 const QColor kPlateOfHelp(14, 18, 22, 226);
 
 struct Way {
@@ -97,6 +99,20 @@ void VisitorLayer::begin() {
     update();
 }
 
+void VisitorLayer::setOpening(const Words& title, double fraction) {
+    opening_ = Opening{title, fraction};
+    show();
+    raise();
+    update();
+}
+
+void VisitorLayer::endOpening() {
+    if (!opening_) return;
+    opening_.reset();
+    setVisible(help_ || forVisitors_);
+    update();
+}
+
 void VisitorLayer::setPlayed(bool played) {
     played_ = played;
     update();
@@ -144,6 +160,7 @@ void VisitorLayer::takeFrame() {
 void VisitorLayer::animate() {
     if (!isVisible()) return;
     if (help_ && static_cast<double>(helped_.elapsed()) > 1e3 * kHelpSeconds) return setHelp(false);
+    if (opening_) return update();
     if (help_ || handShown() || waysShown()) {
         update(animated());
     } else if (begun_.isValid() && static_cast<double>(begun_.elapsed()) > 1e3 * kBeginSeconds) {
@@ -182,6 +199,7 @@ QRectF VisitorLayer::helpBox() const {
 void VisitorLayer::paintEvent(QPaintEvent* /*event*/) {
     QPainter painter(this);
     painter.setRenderHint(QPainter::Antialiasing);
+    if (opening_) return paintOpening(painter);
     if (!captionTitle().isEmpty()) paintCaption(painter);
     if (waysShown()) paintWays(painter);
     if (handShown()) paintHand(painter);
@@ -224,6 +242,25 @@ void VisitorLayer::paintCaption(QPainter& painter) const {
     painter.drawText(
         QRectF(plate.left() + 16.0, plate.top() + 16.0 + titleBox.height(), room.width() + 2.0, textBox.height()),
         Qt::TextWordWrap, sentence);
+}
+
+void VisitorLayer::paintOpening(QPainter& painter) const {
+    painter.fillRect(rect(), kVeil);
+    painter.setPen(kInk);
+    painter.setFont(fontOf(font(), 22.0, QFont::DemiBold));
+    const QRectF words(kMargin, 0.5 * height() - 60.0, width() - 2.0 * kMargin, 40.0);
+    painter.drawText(words, Qt::AlignCenter, studio_.settings.say(opening_->title));
+    const QRectF bar(0.5 * (width() - kBarWidth), 0.5 * height(), kBarWidth, 6.0);
+    painter.setPen(Qt::NoPen);
+    painter.setBrush(QColor(255, 255, 255, 50));
+    painter.drawRoundedRect(bar, 3.0, 3.0);
+    QRectF done = bar;
+    if (opening_->fraction >= 0.0)
+        done.setWidth(std::max(6.0, std::min(opening_->fraction, 1.0) * bar.width()));
+    else
+        done = {bar.left() + turn(1.6) * 0.7 * bar.width(), bar.top(), 0.3 * bar.width(), bar.height()};
+    painter.setBrush(kInk);
+    painter.drawRoundedRect(done, 3.0, 3.0);
 }
 
 void VisitorLayer::paintHelp(QPainter& painter) const {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 
 #include <QElapsedTimer>
 #include <QTimer>
@@ -23,6 +24,12 @@ public:
     void setForVisitors(bool on);
     /// An application begins: its ways to play appear for some seconds.
     void begin();
+    /// An application is being opened, and so much of it is done (negative: nobody knows): what showed before is
+    /// veiled.
+    void setOpening(const Words& title, double fraction);
+    /// It is there, or could not be opened.
+    void endOpening();
+    [[nodiscard]] bool openingShown() const noexcept { return opening_.has_value(); }
     /// Somebody plays, or nobody does.
     void setPlayed(bool played);
     void setHelp(bool on);
@@ -52,8 +59,16 @@ private:
     void paintHand(QPainter& painter) const;
     void paintCaption(QPainter& painter) const;
     void paintHelp(QPainter& painter) const;
+    void paintOpening(QPainter& painter) const;
+
+    /// What is being opened.
+    struct Opening {
+        Words title;
+        double fraction = 0.0;
+    };
 
     Studio& studio_;
+    std::optional<Opening> opening_;
     std::shared_ptr<const ShowCaption> caption_;
     QElapsedTimer since_;   ///< it is there: what moves goes by it
     QElapsedTimer begun_;   ///< since the application began; invalid: long ago
