@@ -36,6 +36,7 @@ struct RenderArguments {
     std::string state;
     std::string output;
     std::vector<std::string> hands;
+    bool handsTracked = false;
     double ambient = 0.0;
     int projector = 0;
     double seconds = 0.0;
@@ -119,6 +120,7 @@ void render(const RenderArguments& arguments, const Session& session) {
         if (!place) throw InvalidInput("--hand", "it is empty", "give a place as X,Y,Z in metres");
         request.hands.push_back(*place);
     }
+    request.handsTracked = arguments.handsTracked;
     ProjectMoment moment{arguments.seconds, placeOf("--eye", arguments.eye), std::nullopt};
     if (!arguments.state.empty()) moment.state = parseState(arguments.state);
 
@@ -155,6 +157,8 @@ void addRenderCommand(CLI::App& app, Session& session) {
         ->add_option("--hand", arguments->hands,
                      "In the lab, the viewer's hand at a place, world metres: X,Y,Z; once for each hand")
         ->allow_extra_args(false); // else it takes the project that follows for another hand
+    command->add_flag("--hands-tracked", arguments->handsTracked,
+                      "A tracker sees these hands: projectors leave to one another what a hand keeps from one");
     command->add_option("--ambient", arguments->ambient, "In the lab, the room's light: radiance of white")
         ->check(numberBetween(0.0, 10.0))
         ->capture_default_str();

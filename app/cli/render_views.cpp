@@ -10,6 +10,7 @@
 
 #include "calibration/lab/lab_world.h"
 #include "core/base/error.h"
+#include "core/loop/hand_near.h"
 #include "core/render/figure/figure.h"
 #include "core/render/gl/headless_context.h"
 #include "core/render/viewport/viewport_renderer.h"
@@ -36,7 +37,7 @@ void checkRequest(const ShowFrame& frame, const ViewRequest& request) {
     for (const glm::vec3& hand : request.hands)
         checkPlace("--hand", hand, "it is not above the table, so it is in no light");
     if (request.view == ViewRequest::View::lab) return;
-    if (!request.hands.empty())
+    if (!request.hands.empty() || request.handsTracked)
         throw InvalidInput("--hand", "only the lab has visitors", "use it with --view lab, or leave it out");
     if (request.ambient > 0.0)
         throw InvalidInput("--ambient", "only the lab has the light of a room",
@@ -69,7 +70,13 @@ RenderedView projectorView(SpatialRenderer& renderer, const ShowFrame& frame, co
 RenderedView labView(SpatialRenderer& renderer, const ShowFrame& frame, const ViewRequest& request) {
     const CalibratedCamera camera =
         deviceView(frame, request.observer.value_or(eyeOf(frame)), request.size.value_or(kEyeSize));
-    renderer.draw(frame);
+    ShowFrame known = frame;
+    if (request.handsTracked)
+        for (const glm::vec3& hand : request.hands) {
+            const std::vector<Capsule> shape = handAt(hand, eyeOf(frame));
+            known.hands.insert(known.hands.end(), shape.begin(), shape.end());
+        }
+    renderer.draw(known);
     std::vector<Image> pictures;
     for (std::size_t i = 0; i < frame.installation->projectors.size(); ++i)
         pictures.push_back(frame.installation->projectors[i].enabled ? renderer.readProjector(i) : Image());

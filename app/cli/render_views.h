@@ -22,6 +22,7 @@ struct ViewRequest {
     std::optional<glm::ivec2> size;    ///< else 1280 x 800, or the projector's own
     std::vector<glm::vec3> hands;      ///< of the viewer, in View::lab
     double ambient = 0.0;              ///< radiance of white under the room's light, in View::lab
+    bool handsTracked = false;         ///< projectors know where the hands are
 };
 
 struct RenderedView {

@@ -21,9 +21,14 @@ namespace lumorph {
                                                  const glm::mat4& worldFromDevice, Microseconds now,
                                                  const Installation& installation = {});
 
-/// The room that a tracked hand takes, world metres, from what its tracker says of its body. Where the tip was
-/// measured: a finger (or stick) from the tip to the body, and behind the body hand and forearm in the same direction.
-/// Else a ball that a hand with its fingers hardly leaves; nothing tells then where the arm is.
-[[nodiscard]] std::vector<Capsule> handShape(const Installation& installation, const Pose& tracked);
+/// The room that a hand around a place takes, with the forearm behind it, world metres. It is the hand of a visitor who
+/// stands where this eye is: fingers point away from him, and the arm comes from him. Without an eye a ball that a hand
+/// hardly leaves: nothing tells where the arm is.
+[[nodiscard]] std::vector<Capsule> handAt(const glm::vec3& place, const std::optional<glm::vec3>& eye);
+
+/// The same from what a tracker says of its body. Where the tip was measured that tells the direction instead: a finger
+/// (or stick) from the tip to the body, and behind the body hand and forearm.
+[[nodiscard]] std::vector<Capsule> handShape(const Installation& installation, const Pose& tracked,
+                                             const std::optional<glm::vec3>& eye);
 
 } // namespace lumorph

@@ -16,7 +16,7 @@ namespace {
 /// What the board's streams say about one moment to come.
 class Outlook {
 public:
-    /// Writes where the device and the hands are into the frame, for its `lightTime`.
+    /// Writes where the device is into the frame, for its `lightTime`.
     Outlook(const PoseBoard* board, const Installation& installation, MatchFrame& frame)
         : installation_(installation), frame_(frame) {
         if (board)
@@ -30,6 +30,16 @@ public:
         return std::clamp(ahead, 0.0, 1e3 * PoseStream::kFarthestAhead);
     }
 
+    /// With their arms, which come from who looks.
+    [[nodiscard]] std::vector<Capsule> hands(const std::optional<glm::vec3>& eye) const {
+        std::vector<Capsule> all;
+        for (const Pose& seen : hands_) {
+            const std::vector<Capsule> hand = handShape(installation_, seen, eye);
+            all.insert(all.end(), hand.begin(), hand.end());
+        }
+        return all;
+    }
+
     std::vector<TrackedHead> heads;
     bool headsExpected = false; ///< a tracker follows heads, whether it sees one or not
     bool tracked = false;       ///< any body but hands
@@ -40,7 +50,7 @@ private:
         headsExpected |= entry.role == PoseRole::head;
         const std::optional<Pose> seen = entry.stream->at(then, frame_.time);
         if (!seen) return;
-        if (entry.role == PoseRole::pointer) return addHand(*seen);
+        if (entry.role == PoseRole::pointer) return hands_.push_back(*seen);
         tracked = true;
         const Pose pose = inRoom(installation_, entry.role, *seen);
         if (const std::optional<PoseSample> sample = entry.stream->latest()) oldest = std::min(oldest, sample->time);
@@ -49,13 +59,9 @@ private:
         if (entry.role == PoseRole::device) frame_.worldFromDevice = glm::mat4(matrixOf(pose));
     }
 
-    void addHand(const Pose& seen) {
-        const std::vector<Capsule> hand = handShape(installation_, seen);
-        frame_.hands.insert(frame_.hands.end(), hand.begin(), hand.end());
-    }
-
     const Installation& installation_;
     MatchFrame& frame_;
+    std::vector<Pose> hands_;
 };
 
 } // namespace
@@ -92,6 +98,7 @@ void ViewerStage::look(const MatchWish& wish, double sinceLast, MatchFrame& fram
     } else if (!outlook.headsExpected && installation.viewer != ViewerChoice::none) {
         frame.eye = installation.eye;
     }
+    frame.hands = outlook.hands(frame.eye);
     moves_ = outlook.tracked || !frame.hands.empty();
 }
 
@@ -104,11 +111,11 @@ NewestView newestView(const MatchFrame& frame) {
     late.worldFromDevice = frame.worldFromDevice;
     const Outlook outlook(frame.poses.get(), *frame.installation, late);
     view.worldFromDevice = late.worldFromDevice;
-    view.hands = std::move(late.hands);
     view.latency = outlook.latency();
     const auto viewer = std::ranges::find(outlook.heads, frame.viewer, &TrackedHead::name);
     if (frame.eye && !frame.handingOver && !frame.viewer.empty() && viewer != outlook.heads.end())
         view.eye = glm::vec3(viewer->eye);
+    view.hands = outlook.hands(view.eye);
     return view;
 }
 

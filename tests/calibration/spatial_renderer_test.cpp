@@ -6,7 +6,9 @@
 #include <glm/geometric.hpp>
 #include <gmock/gmock.h>
 
+#include "calibration/lab/lab_world.h"
 #include "core/base/error.h"
+#include "core/loop/hand_near.h"
 #include "core/render/gl/headless_context.h"
 #include "tests/calibration/show_world.h"
 
@@ -176,6 +178,45 @@ TEST(SpatialRendererInRoom, TwoProjectorsShareTheWorkWithoutASeam) {
     EXPECT_GT(value, 0.2 * whole);
     EXPECT_LT(value, 0.8 * whole);
     EXPECT_EQ(renderer.projectorTexture(1), 0U);
+}
+
+// Of the device's places that are seen beside a visitor's hand, the share that his hand leaves less than half of their
+// light, by rays.
+double shadowedByHand(SpatialRenderer& renderer, const std::vector<InstalledProjector>& projectors, bool tracked) {
+    const glm::vec3 place(0.0F, 0.12F, 0.02F);
+    ShowFrame frame = frameOf(unlitScene(glm::vec3(0.6F), glm::vec3(0.6F), projectors), liftedFlaps());
+    renderer.draw(frame);
+    const std::vector<glm::vec3> free = Lab(labOf(frame, renderer)).radiance(kAbove, 1);
+    if (tracked) frame.hands = handAt(place, frame.eye);
+    renderer.draw(frame);
+    LabWorld world = labOf(frame, renderer);
+    world.blockers.push_back(visitorHand(place, *frame.eye));
+    const Lab lab(std::move(world));
+    const std::vector<glm::vec3> held = lab.radiance(kAbove, 1);
+    double lit = 0.0, lost = 0.0;
+    for (int y = 0; y < kAbove.size.y; ++y)
+        for (int x = 0; x < kAbove.size.x; ++x) {
+            const auto hit = lab.trace(positionOf(kAbove), directionOf(kAbove, {x, y}));
+            const auto k = static_cast<std::size_t>(y * kAbove.size.x + x);
+            if (!hit || hit->surface != 0 || hit->normal.y < 0.5 || free[k].g < 0.1F) continue;
+            lit += 1.0;
+            lost += held[k].g < 0.5F * free[k].g ? 1.0 : 0.0;
+        }
+    return lost / lit;
+}
+
+TEST(SpatialRendererInRoom, ShadowOfATrackedHandIsFilledByTheOtherProjector) {
+    const HeadlessContext context;
+    SpatialRenderer renderer;
+    const double one =
+        std::max(shadowedByHand(renderer, {pair()[0]}, true), shadowedByHand(renderer, {pair()[1]}, true));
+    const double unknown = shadowedByHand(renderer, pair(), false);
+    const double two = shadowedByHand(renderer, pair(), true);
+    for (const auto& [name, share] : {std::pair("one", one), {"two_unknown", unknown}, {"two", two}})
+        RecordProperty(name, std::to_string(100.0 * share));
+    EXPECT_GT(one, 0.1);
+    EXPECT_GT(unknown, 2.0 * two) << "where nobody tracks it";
+    EXPECT_LE(two, 0.2 * one) << "of the top; one projector alone leaves " << one;
 }
 
 // The share of the light at a table's point that a projector brings, from the value it sends there.

@@ -67,14 +67,19 @@ TEST(HandDistance, WithoutABoxThereIsNothingToBeNear) {
 TEST(HandShape, ReachesFromTheTipOverTheBodyToTheArm) {
     Installation room;
     const Pose body{{0.1, 0.3, 0.2}, {1.0, 0.0, 0.0, 0.0}};
-    const std::vector<Capsule> ball = handShape(room, body);
+    const std::vector<Capsule> ball = handShape(room, body, std::nullopt);
     ASSERT_EQ(ball.size(), 1U) << "nobody knows where its fingers point";
     EXPECT_EQ(ball[0].from, ball[0].to);
     EXPECT_EQ(ball[0].from, glm::vec3(body.position));
 
+    const std::vector<Capsule> visitors = handShape(room, body, glm::vec3(0.1F, 0.5F, 0.9F));
+    ASSERT_EQ(visitors.size(), 2U);
+    EXPECT_LT(visitors[0].from.z, visitors[0].to.z) << "fingers point away from him";
+    EXPECT_GT(visitors[1].to.z, 0.5F) << "and the arm comes from him";
+
     room.pointerTip = {0.0F, -0.1F, 0.0F};
     room.worldFromTracker = glm::translate(glm::mat4(1.0F), {1.0F, 0.0F, 0.0F});
-    const std::vector<Capsule> hand = handShape(room, body);
+    const std::vector<Capsule> hand = handShape(room, body, glm::vec3(0.1F, 0.5F, 0.9F));
     ASSERT_EQ(hand.size(), 2U);
     const auto isAt = [](const glm::vec3& point, const glm::vec3& expected) {
         return glm::distance(point, expected) < 1e-5F;
