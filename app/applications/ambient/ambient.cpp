@@ -8,6 +8,7 @@
 
 #include <glm/geometric.hpp>
 
+#include "app/applications/ambient/caption.h"
 #include "app/applications/ambient/simulated_year.h"
 #include "app/applications/demo_items.h"
 #include "core/base/error.h"
@@ -26,6 +27,7 @@ constexpr double kFogLife = 14.0;         ///< seconds that a bank of fog is see
 constexpr double kMoonMoves = 600.0;      ///< seconds of the world after which the moon is looked for again
 constexpr double kBoltsASecond = 0.35;    ///< in a thunderstorm
 constexpr double kFlashSeconds = 0.75;
+constexpr double kSlowDay = 7200.0;   ///< seconds of a day in which minutes can be read
 constexpr double kThunderAfter = 0.6; ///< seconds after its bolt
 
 AmbientSettings complete(AmbientSettings settings, std::uint64_t seed) {
@@ -91,7 +93,18 @@ ShowContent AmbientProgram::frame(const ShowMoment& moment) {
     content.target = wish(causalLag(*moment.rig));
     content.following = Following::split;
     content.sounds = sounds();
+    say();
+    content.caption = caption_;
     return content;
+}
+
+/// A new line each hour where the day goes by in minutes, else each minute.
+void AmbientProgram::say() {
+    const double quantum = settings_.daySeconds < kSlowDay ? 3600.0 : 60.0;
+    const double now = std::floor(view_.utc / quantum);
+    if (caption_ && now == told_) return;
+    told_ = now;
+    caption_ = std::make_shared<const ShowCaption>(captionOf(view_, quantum));
 }
 
 /// Weather, sun and moon now, and the hours of the day at hand.

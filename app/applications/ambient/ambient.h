@@ -61,6 +61,7 @@ private:
     void slosh(const ShowMoment& moment);
     void turnFog(double step);
     void thunder(double step);
+    void say();
     [[nodiscard]] HeightGrid wish(double lag) const;
     [[nodiscard]] std::vector<ShowSound> sounds() const;
 
@@ -72,6 +73,8 @@ private:
     Visitor visitor_;
     Slosh slosh_{0.45};
     std::vector<Wave> sloping_; ///< the slope of the sea in a leant device; empty while it is none
+    std::shared_ptr<const ShowCaption> caption_;
+    double told_ = -1.0; ///< hours or minutes of the world that the caption is of
     std::optional<WorldClock> clock_;
     std::mt19937_64 chance_;
 

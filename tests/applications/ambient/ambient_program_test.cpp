@@ -45,6 +45,38 @@ int shownAmong(const Scene& scene, int first, int count) {
     return shown;
 }
 
+TEST(AmbientProgram, SaysDayWeatherAndWhatComesToWhoWantsToReadIt) {
+    std::vector<WeatherHour> hours(72, windy(7.4));
+    for (std::size_t k = 0; k < hours.size(); ++k) {
+        hours[k].temperature = 11.6;
+        hours[k].cloudCover = 0.5;
+        hours[k].windFrom = 4.71; // west
+        hours[k].rain = k >= 10 ? 3.0 : 0.0;
+    }
+    AmbientSettings settings;
+    settings.weather = std::make_shared<const Weather>(1'780'000'000.0, hours);
+    settings.begin = 1'780'012'800.0; // Friday 2026-05-29, 0:00 UTC
+    settings.daySeconds = 86'400.0;
+    AmbientProgram program(1, settings);
+    Visit visit(program);
+    visit.frame();
+    double rains = *settings.begin;
+    while (program.weather().at(rains).rain < 0.1) rains += 3600.0;
+    const std::string hour = std::to_string(std::lround((rains - *settings.begin) / 3600.0) + 1) + ":00";
+    ASSERT_TRUE(visit.content().caption);
+    EXPECT_EQ(visit.content().caption->title.english, "Friday, 1:00");
+    EXPECT_EQ(visit.content().caption->title.german, "Freitag, 1:00");
+    EXPECT_EQ(visit.content().caption->sentence.english,
+              "12 \u00B0C, cloudy, wind 7 m/s from the west. Rain from " + hour + ".");
+    EXPECT_EQ(visit.content().caption->sentence.german,
+              "12 \u00B0C, wolkig, Wind 7 m/s aus West. Regen ab " + hour + ".");
+    const auto first = visit.content().caption;
+    visit.frames(20.0);
+    EXPECT_EQ(visit.content().caption, first) << "the same object within its minute";
+    visit.frames(45.0);
+    EXPECT_EQ(visit.content().caption->title.english, "Friday, 1:01");
+}
+
 TEST(AmbientProgram, ShowsEveryNotableDayByItself) {
     AmbientSettings settings;
     settings.daySeconds = 20.0;
