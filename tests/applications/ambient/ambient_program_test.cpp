@@ -58,7 +58,7 @@ TEST(AmbientProgram, SaysDayWeatherAndWhatComesToWhoWantsToReadIt) {
     settings.begin = 1'780'012'800.0; // Friday 2026-05-29, 0:00 UTC
     settings.daySeconds = 86'400.0;
     AmbientProgram program(1, settings);
-    Visit visit(program);
+    Visit visit(program, 0.5);
     visit.frame();
     double rains = *settings.begin;
     while (program.weather().at(rains).rain < 0.1) rains += 3600.0;
