@@ -158,7 +158,9 @@ TEST(HandShadow, HandIsSeenInARoomThatIsLitAndNowhereElse) {
             const float clear = passes(eye, eye + 1.2F * way);
             const bool differs = with.pixels()[k] != without.pixels()[k];
             changed += differs ? 1 : 0;
-            if (clear > 0.012F) EXPECT_FALSE(differs) << x << ", " << y << " beside the hand";
+            if (clear > 0.012F) {
+                EXPECT_FALSE(differs) << x << ", " << y << " beside the hand";
+            }
         }
     EXPECT_GT(changed, 300);
 }
