@@ -329,7 +329,9 @@ LensFocus lensFocusOf(std::span<const MeasuredBlur> measured) {
         }
         if (error < least) least = error, best = {aperture, aperture / slope};
     }
-    if (!(best.aperture > 0.0)) refuse("it does not change with the distance as a lens has it");
+    constexpr double kWidest = 0.5, kFarthest = 100.0; // metres: no lens of a projector is wider, or focused beyond
+    if (!(best.aperture > 0.0 && best.aperture <= kWidest && best.focusDistance <= kFarthest))
+        refuse("it does not change with the distance as a lens has it");
     return best;
 }
 

@@ -180,8 +180,8 @@ TEST(SpatialRendererInRoom, TwoProjectorsShareTheWorkWithoutASeam) {
     EXPECT_EQ(renderer.projectorTexture(1), 0U);
 }
 
-// Of the device's places that are seen beside a visitor's hand, the share that his hand leaves less than half of their
-// light, by rays.
+// Of the device's places that are seen beside a visitor's hand, the share from which his hand takes more than 30 % of
+// their light, by rays.
 double shadowedByHand(SpatialRenderer& renderer, const std::vector<InstalledProjector>& projectors, bool tracked) {
     const glm::vec3 place(0.0F, 0.12F, 0.02F);
     ShowFrame frame = frameOf(unlitScene(glm::vec3(0.6F), glm::vec3(0.6F), projectors), liftedFlaps());
@@ -200,7 +200,7 @@ double shadowedByHand(SpatialRenderer& renderer, const std::vector<InstalledProj
             const auto k = static_cast<std::size_t>(y * kAbove.size.x + x);
             if (!hit || hit->surface != 0 || hit->normal.y < 0.5 || free[k].g < 0.1F) continue;
             lit += 1.0;
-            lost += held[k].g < 0.5F * free[k].g ? 1.0 : 0.0;
+            lost += held[k].g < 0.7F * free[k].g ? 1.0 : 0.0;
         }
     return lost / lit;
 }

@@ -195,6 +195,36 @@ void showBehind(Scene& scene, const Game& game, const glm::dvec3& eye) {
     item.scale = glm::vec3(static_cast<float>(2.0 * kBallRadius * (1.0 - at / far)));
 }
 
+/// Where a ray goes into a block and out of it, metres from its origin; `out` below `in`: it passes.
+struct Passage {
+    double in = 0.0, out = 1.0; ///< no block is farther
+};
+
+Passage within(const Block& block, const glm::dvec3& from, const glm::dvec3& way) {
+    Passage passage;
+    // Inside is where `at` plus a way times `per` is not below 0.
+    const auto cut = [&passage](double at, double per) {
+        if (per > 0.0)
+            passage.in = std::max(passage.in, -at / per);
+        else if (per < 0.0)
+            passage.out = std::min(passage.out, -at / per);
+        else if (at < 0.0)
+            passage.out = -1.0;
+    };
+    const auto cross = [](const glm::dvec2& a, const glm::dvec2& b) { return a.x * b.y - a.y * b.x; };
+    const glm::dvec2 flat(from.x, from.z), flatWay(way.x, way.z);
+    for (std::size_t k = 0; k < 4; ++k) {
+        const glm::dvec2 side = block.outline[(k + 1) % 4] - block.outline[k];
+        cut(cross(side, flat - block.outline[k]), cross(side, flatWay));
+    }
+    const glm::dvec2 u = block.outline[1] - block.outline[0], v = block.outline[3] - block.outline[0];
+    const double det = cross(u, v), du = block.tops[1] - block.tops[0], dv = block.tops[3] - block.tops[0];
+    const auto rises = [&](const glm::dvec2& by) { return (cross(by, v) * du + cross(u, by) * dv) / det; };
+    cut(from.y - block.bottom, way.y);
+    cut(block.tops[0] + rises(flat - block.outline[0]) - from.y, rises(flatWay) - way.y);
+    return passage;
+}
+
 void lean(Scene& scene, const glm::dvec2& lean) {
     SceneItem& board = itemOf(scene, kLeaning);
     const glm::dquat turn = boardTurn(lean);
@@ -226,16 +256,11 @@ glm::dquat boardTurn(const glm::dvec2& lean) {
 }
 
 double hiddenUpTo(const std::vector<Block>& blocks, const glm::dvec3& ball, const glm::dvec3& eye) {
-    constexpr double kStep = 0.001, kHighest = 0.04; // metres: no wall is higher
     const glm::dvec3 way = glm::normalize(eye - ball);
-    if (!(way.y > 0.05)) return 0.0; // an eye beside the tablet sees walls alone
     double hidden = 0.0;
-    for (double gone = kBallRadius + kStep; ball.y + gone * way.y < kHighest; gone += kStep) {
-        const glm::dvec3 at = ball + gone * way;
-        const bool isIn = std::ranges::any_of(blocks, [&](const Block& block) {
-            return at.y > block.bottom && at.y < topAt(block, {at.x, at.z});
-        });
-        if (isIn) hidden = gone;
+    for (const Block& block : blocks) {
+        const auto [in, out] = within(block, ball, way);
+        if (out > std::max(in, kBallRadius)) hidden = std::max(hidden, out);
     }
     return hidden;
 }

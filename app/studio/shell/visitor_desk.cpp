@@ -77,15 +77,21 @@ void VisitorDesk::wantApplication(const Demo& demo) {
     opening_ = &demo;
     openingSince_.start();
     emit applicationWanted(demo);
+    QTimer::singleShot(kOpensAtOnce + 1, this, &VisitorDesk::followOpening); // it may have nothing to report for long
 }
 
 /// What opens at once needs no veil.
 void VisitorDesk::followOpening() {
-    if (mode_ == Mode::studio) opening_ = nullptr;
     const auto jobs = studio_.jobs.running();
     const auto job = std::ranges::find(jobs, QString("project"), &Jobs::Status::place);
-    if (opening_ == nullptr || job == jobs.end()) return layer_->endOpening();
-    if (openingSince_.elapsed() > kOpensAtOnce) layer_->setOpening(opening_->title, job->fraction);
+    const bool isOver = job == jobs.end() && openingSince_.isValid() && openingSince_.elapsed() > kOpensAtOnce;
+    if (mode_ == Mode::studio || isOver) opening_ = nullptr; // cancelled, for example
+    const bool wasShown = layer_->openingShown();
+    if (opening_ == nullptr || job == jobs.end())
+        layer_->endOpening();
+    else if (openingSince_.elapsed() > kOpensAtOnce)
+        layer_->setOpening(opening_->title, job->fraction);
+    if (layer_->openingShown() != wasShown) arrange();
 }
 
 void VisitorDesk::takeOpened() {

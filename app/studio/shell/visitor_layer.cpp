@@ -102,7 +102,6 @@ void VisitorLayer::begin() {
 void VisitorLayer::setOpening(const Words& title, double fraction) {
     opening_ = Opening{title, fraction};
     show();
-    raise();
     update();
 }
 

@@ -348,7 +348,10 @@ void RigLight::showFocus() {
     if (!projector) return;
     aperture_->setValue(projector->focus.aperture);
     focused_->setValue(projector->focus.focusDistance);
-    if (found_) focusNote_->setText(focusText(lights ? found_->now : LightMap{}, projector->focus));
+    if (!found_) return;
+    const bool isOfNow = found_->now.blurKnown == (projector->focus.aperture > 0.0);
+    focusNote_->setEnabled(isOfNow);
+    if (isOfNow) focusNote_->setText(focusText(lights ? found_->now : LightMap{}, projector->focus));
 }
 
 void RigLight::chooseModel() {

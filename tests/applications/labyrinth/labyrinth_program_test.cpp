@@ -222,7 +222,7 @@ TEST(LabyrinthProgram, TheBoardLeansAsItIsAskedToAndNotTwiceWithTheDevice) {
     EXPECT_NEAR(placed(0.1, 0.0).y, 0.02F - 0.0091F, 3e-4F) << "the right side is down";
     EXPECT_NEAR(placed(-0.1, 0.0).y, 0.02F + 0.0091F, 3e-4F);
     EXPECT_NEAR(placed(0.0, 0.0).y, 0.02F, 1e-5F);
-    EXPECT_NEAR(relief(0.11, -0.06), -0.0100, 4e-4) << "and servos follow";
+    EXPECT_NEAR(relief(0.09, -0.05), -0.0082, 4e-4) << "and servos follow";
     visit.frame({{"key.right", 0.0}, {"key.down", 1.0}});
     visit.frames(0.5);
     EXPECT_NEAR(placed(0.0, 0.07).y, 0.02F - 0.0064F, 3e-4F) << "the side towards the player";
@@ -259,14 +259,15 @@ TEST(LabyrinthProgram, ABallBehindAWallIsSeenInFrontOfIt) {
                 const glm::dvec3 ball(centre.x, level.at({column, row}).height * level.step + kBallRadius, centre.y);
                 if (std::ranges::any_of(blocks, [&](const Block& block) { return isInside(block, ball); })) continue;
                 const glm::dvec3 way = glm::normalize(eye - ball);
-                double last = 0.0;
+                double last = 0.0, within = 0.0; // metres
                 for (double gone = kBallRadius; gone < 0.1; gone += 1e-4)
                     if (std::ranges::any_of(blocks,
                                             [&](const Block& block) { return isInside(block, ball + gone * way); }))
-                        last = gone;
+                        last = gone, within += 1e-4;
                 const double found = hiddenUpTo(blocks, ball, eye);
-                if (last > 0.0 && last < kBallRadius + 0.002) continue; // it touches the wall
-                EXPECT_NEAR(found, last, 0.0021) << level.name << " " << column << " " << row;
+                const bool grazes = within > 0.0 && within < 3e-4; // a rim
+                if (grazes || (last > 0.0 && last < kBallRadius + 2e-4)) continue;
+                EXPECT_NEAR(found, last, 2e-4) << level.name << " " << column << " " << row;
                 ++(last > 0.0 ? hidden : seen);
             }
     }
@@ -277,7 +278,7 @@ TEST(LabyrinthProgram, ABallBehindAWallIsSeenInFrontOfIt) {
 TEST(LabyrinthProgram, WhatStandsForAHiddenBallIsAsLargeForTheEye) {
     LabyrinthProgram program(1, bundledLevels());
     Visit visit(program);
-    const glm::dvec3 eye(0.0, 0.28, 0.45);
+    const glm::dvec3 eye(0.0, 0.13, 0.5); // of a child: walls are low
     visit.look(glm::vec3(eye));
     int shown = 0;
     for (int k = 0; k < 60 * 40; ++k) {

@@ -27,8 +27,8 @@ CalibratedCamera fromAbove() { return cameraLookingAt({0.0, 0.9, 0.02}, {0.0, 0.
 
 /// A finger that points at the tablet, and the arm behind it.
 std::vector<Capsule> hand() {
-    return {{{0.01F, 0.07F, 0.01F}, {0.015F, 0.12F, 0.10F}, 0.012F},
-            {{0.015F, 0.12F, 0.10F}, {0.03F, 0.28F, 0.40F}, 0.045F}};
+    return {{{0.0F, 0.08F, -0.05F}, {0.005F, 0.12F, 0.02F}, 0.012F},
+            {{0.005F, 0.12F, 0.02F}, {0.02F, 0.22F, 0.33F}, 0.045F}};
 }
 
 std::vector<float> lightOf(const Image& picture) {
@@ -97,8 +97,10 @@ TEST(HandShadow, LiesWhereTheHandStandsInTheWayOfLight) {
         const glm::uvec3& corners = device.triangles[t];
         const glm::vec3 place =
             (device.positions[corners.x] + device.positions[corners.y] + device.positions[corners.z]) / 3.0F;
+        const glm::vec3 normal = glm::normalize(glm::cross(device.positions[corners.y] - device.positions[corners.x],
+                                                           device.positions[corners.z] - device.positions[corners.x]));
         const auto pixel = pixelOf(camera, glm::dvec3(place));
-        if (!pixel) continue;
+        if (!pixel || !(normal.y > 0.5F)) continue; // its sides and its bottom are not what the pixel shows
         const glm::ivec2 at(glm::round(*pixel));
         if (at.x < 0 || at.y < 0 || at.x >= camera.size.x || at.y >= camera.size.y) continue;
         const auto k =

@@ -94,6 +94,7 @@ inline Installation fullInstallation() {
     InstalledProjector& projector = installation.projectors[0];
     projector.name = "Beamer";
     projector.enabled = false;
+    projector.focus = {0.0075, 1.85};
     projector.referenceDistance = 1.9;
     projector.peak = 2.5;
     projector.gain = {0.9F, 1.0F, 1.1F};
