@@ -11,6 +11,11 @@ uniform sampler2D sent;
 uniform float gamma;
 #endif
 uniform vec3 surfaceAlbedo; // linear
+#ifndef TABLE
+uniform float bounces; // 1: the device's sides get back what the table has of this projector; 0: direct light alone
+uniform vec3 tableAlbedo;
+uniform vec2 tableHalf;
+#endif
 
 out vec4 color;
 
@@ -35,6 +40,27 @@ vec3 lightBetween(vec2 uv) {
                mix(lightAt(low + ivec2(0, 1)), lightAt(low + ivec2(1, 1)), part.x), part.y);
 }
 
+#ifndef TABLE
+// What a side that looks aside or down sees of the lit table, by some places of which a wall of its height sees most. A
+// table that is darker than paper gives back less: a third.
+vec3 fromTable(vec3 place, vec3 normal) {
+    const vec3 kUp = vec3(0.0, 1.0, 0.0);
+    const vec2 kPlaces[7] = vec2[](vec2(0.4, 0.0), vec2(0.7, 1.1), vec2(0.7, -1.1), vec2(1.6, 2.4), vec2(1.6, -2.4),
+                                   vec2(3.6, 0.9), vec2(3.6, -0.9)); // heights of the place: away from the wall, along it
+    const float kGivenBack = 0.33;
+    vec2 away = normalize(normal.xz + 1e-6) * max(place.y, 0.006);
+    vec3 seen = vec3(0.0);
+    for (int k = 0; k < 7; ++k) {
+        vec2 flatPlace = place.xz + kPlaces[k].x * away + kPlaces[k].y * vec2(-away.y, away.x);
+        if (any(greaterThan(abs(flatPlace), tableHalf))) continue;
+        vec3 at = vec3(flatPlace.x, 0.0, flatPlace.y);
+        Sight sight = sightOf(at, kUp);
+        seen += sight.reached * fullLight(at, kUp) * lightBetween(sight.uv) / 7.0;
+    }
+    return kGivenBack * 0.5 * (1.0 - normal.y) * tableAlbedo * seen;
+}
+#endif
+
 void main() {
     vec3 normal = faceTowards(worldPosition, viewerPosition);
     Sight sight = sightOf(worldPosition, normal);
@@ -43,6 +69,11 @@ void main() {
 #ifdef MASK
     color = vec4(reached > 0.5 && light.g > 0.0 ? 1.0 : 0.0);
 #else
-    color = vec4(surfaceAlbedo * light * reached * lightBetween(sight.uv), 1.0);
+    vec3 arrives = light * reached * lightBetween(sight.uv);
+#ifndef TABLE
+    const float kFlat = 0.97; // cosine of what sees no table
+    if (bounces > 0.0 && normal.y < kFlat) arrives += fromTable(worldPosition, normal);
+#endif
+    color = vec4(surfaceAlbedo * arrives, 1.0);
 #endif
 }

@@ -9,6 +9,7 @@ uniform vec2 principal;
 uniform vec2 frameSize;
 uniform vec2 tableHalf;
 uniform float roomLight;
+uniform float wallLamp; // radiance of white that a lamp behind the table gives the walls alone
 
 out vec4 color;
 
@@ -43,6 +44,7 @@ void main() {
         if (height < kSkirting) albedo = vec3(0.22, 0.2, 0.19);
     }
     vec3 value = roomLight * albedo * light;
+    if (!isFloor) value += wallLamp * albedo * (0.45 + 0.55 * softly(at.y - kRoomLow.y, 1.4));
     // Slow gradients in the dark show steps in eight bits: half a step of noise, in the linear light of it.
     float slope = 2.4 / 1.055 * pow(max((pow(max(value.g, 1e-4), 1.0 / 2.4) * 1.055), 0.05) / 1.055, 1.4);
     color = vec4(max(value + (noiseAt(gl_FragCoord.xy) - 0.5) / 255.0 * slope, 0.0), 1.0);

@@ -10,6 +10,8 @@
 namespace lumorph {
 namespace {
 
+/// While projectors show something walls have a lamp of their own, so that nothing is black behind the device.
+constexpr float kWallLamp = 0.16F;
 /// Radiance of device and table where there is no program for their light, so that the one shows on the other.
 constexpr glm::vec2 kStandIn(0.5F, 0.1F);
 
@@ -71,32 +73,33 @@ void LabPreview::drawWith(Light& light, const Observer& observer, const DeviceSu
 }
 
 /// The current program sees by the observer's rays.
-void LabPreview::drawFullFrame(Program& program, const Observer& observer, float light) {
+void LabPreview::drawFullFrame(Program& program, const Observer& observer) {
     const CalibratedCamera& camera = observer.camera;
     program.set("worldFromCamera", glm::mat4(glm::inverse(camera.cameraFromWorld)));
     program.set("viewerPosition", glm::vec3(positionOf(camera)));
     program.set("focal", glm::vec2(camera.focal));
     program.set("principal", glm::vec2(camera.principal));
     program.set("frameSize", glm::vec2(camera.size));
-    program.set("roomLight", light);
+    program.set("roomLight", observer.room);
     glBindVertexArray(noAttributes_.name());
     glDrawArrays(GL_TRIANGLES, 0, 3);
     glBindVertexArray(0);
 }
 
-void LabPreview::drawRoom(const Observer& observer, float light, const DeviceSurface& device) {
+void LabPreview::drawRoom(const Observer& observer, const DeviceSurface& device, bool showing) {
     glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
     room_.use();
     room_.set("tableHalf", 0.5F * observer.installation.tableSize);
+    room_.set("wallLamp", showing ? kWallLamp : 0.0F);
     glDepthMask(GL_FALSE);
-    drawFullFrame(room_, observer, light);
+    drawFullFrame(room_, observer);
     glDepthMask(GL_TRUE);
-    drawWith(roomLight_, observer, device, [&](Program& program) { program.set("roomLight", light); });
+    drawWith(roomLight_, observer, device, [&](Program& program) { program.set("roomLight", observer.room); });
     if (observer.hands.empty()) return;
     hands_.use();
     setHands(hands_, observer.hands);
     setCamera(hands_, observer.camera, observer.range.near, observer.range.far);
-    drawFullFrame(hands_, observer, light);
+    drawFullFrame(hands_, observer);
 }
 
 void LabPreview::addProjector(const Observer& observer, const DeviceSurface& device, const ProjectorTarget& projector,
@@ -104,6 +107,9 @@ void LabPreview::addProjector(const Observer& observer, const DeviceSurface& dev
     drawWith(light, observer, device, [&](Program& program) {
         setLight(program, projector.projector);
         setHands(program, observer.hands);
+        program.set("bounces", observer.room > 0.0F ? 1.0F : 0.0F);
+        program.set("tableAlbedo", albedoOf(observer.installation, PhysicalSurface::table));
+        program.set("tableHalf", 0.5F * observer.installation.tableSize);
         setSight(program, projector, 0);
         bindTexture(1, projector.sent.texture());
         program.set("sent", 1);
@@ -122,12 +128,12 @@ void LabPreview::addLight(const Observer& observer, const DeviceSurface& device,
         addProjector(observer, device, *projector, projector->response ? measuredLight_ : light_);
 }
 
-void LabPreview::drawLit(const Observer& observer, float room, const DeviceSurface& device,
+void LabPreview::drawLit(const Observer& observer, const DeviceSurface& device,
                          std::span<const ProjectorTarget* const> projectors) {
     if (!problem_.empty()) return;
     try {
-        if (room > 0.0F)
-            drawRoom(observer, room, device);
+        if (observer.room > 0.0F)
+            drawRoom(observer, device, !projectors.empty());
         else
             drawSurfaces(observer, device, 0.0F, 0.0F);
         addLight(observer, device, projectors);
@@ -153,9 +159,9 @@ void LabPreview::draw(GLuint framebuffer, const CalibratedCamera& observer, floa
                       PictureOutput& out) {
     if (!radiance_ || radiance_->size() != observer.size) radiance_.emplace(observer.size, GL_RGBA16F);
     table_.fit(observer, frame.installation->tableSize);
-    const Observer seen{observer, depthRange(observer, physicalBounds(frame)), *frame.installation, frame.hands};
+    const Observer seen{observer, depthRange(observer, physicalBounds(frame)), *frame.installation, frame.hands, room};
     beginSurfaces(radiance_->framebuffer(), observer.size);
-    drawLit(seen, room, device, projectors);
+    drawLit(seen, device, projectors);
     if (!problem_.empty()) drawStandIn(seen, device);
     out.draw(framebuffer, *radiance_);
 }
@@ -163,7 +169,7 @@ void LabPreview::draw(GLuint framebuffer, const CalibratedCamera& observer, floa
 void LabPreview::drawMask(GLuint framebuffer, const CalibratedCamera& observer, const ShowFrame& frame,
                           const DeviceSurface& device, std::span<const ProjectorTarget* const> projectors) {
     table_.fit(observer, frame.installation->tableSize);
-    const Observer seen{observer, depthRange(observer, physicalBounds(frame)), *frame.installation, frame.hands};
+    const Observer seen{observer, depthRange(observer, physicalBounds(frame)), *frame.installation, frame.hands, 0.0F};
     beginSurfaces(framebuffer, observer.size);
     drawSurfaces(seen, device, 0.0F, 0.0F);
     glDepthMask(GL_FALSE);

@@ -35,6 +35,7 @@ private:
         DepthRange range;
         const Installation& installation;
         std::span<const Capsule> hands;
+        float room = 0.0F; ///< light of it
     };
     /// Programs of one kind of light, on device and table.
     struct Light {
@@ -43,9 +44,9 @@ private:
     void drawSurfaces(const Observer& observer, const DeviceSurface& device, float onDevice, float onTable);
     void drawWith(Light& light, const Observer& observer, const DeviceSurface& device,
                   const std::function<void(Program&)>& set);
-    void drawRoom(const Observer& observer, float light, const DeviceSurface& device);
-    void drawFullFrame(Program& program, const Observer& observer, float light);
-    void drawLit(const Observer& observer, float room, const DeviceSurface& device,
+    void drawRoom(const Observer& observer, const DeviceSurface& device, bool showing);
+    void drawFullFrame(Program& program, const Observer& observer);
+    void drawLit(const Observer& observer, const DeviceSurface& device,
                  std::span<const ProjectorTarget* const> projectors);
     void drawStandIn(const Observer& observer, const DeviceSurface& device);
     void addLight(const Observer& observer, const DeviceSurface& device,

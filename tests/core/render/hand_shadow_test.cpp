@@ -112,7 +112,7 @@ TEST(HandShadow, LiesWhereTheHandStandsInTheWayOfLight) {
         ++(clear < 0.0F ? dark : lit);
     }
     EXPECT_GT(dark, 40);
-    EXPECT_GT(lit, 200);
+    EXPECT_GT(lit, 100);
 }
 
 TEST(HandShadow, IsFilledByTheOtherProjector) {

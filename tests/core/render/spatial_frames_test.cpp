@@ -259,20 +259,23 @@ TEST(SpatialFrames, ARoomThatIsDimAddsItsLightAndShowsFloorAndWalls) {
     renderer.draw(frame);
     const CalibratedCamera low = cameraLookingAt({0.9, 0.5, 1.0}, {0.0, 0.0, 0.0}, {320, 200}, 160.0);
     const Image dark = renderer.readLab(low), dim = renderer.readLab(low, kDimRoom), bare = renderer.readBare(low);
-    int black = 0, lit = 0, floor = 0;
+    int black = 0, lit = 0, floor = 0, more = 0;
     for (std::size_t k = 0; k < dim.pixels().size(); ++k) {
         const Image::Pixel &without = dark.pixels()[k], &with = dim.pixels()[k], &room = bare.pixels()[k];
         black += with[0] + with[1] + with[2] == 0 ? 1 : 0;
         lit += without[0] + without[1] > 60 ? 1 : 0;
         floor += without == Image::Pixel{0, 0, 0, 255} ? 1 : 0;
+        // Walls have a lamp of their own, and the device's sides what the table gives back: there it is more.
         for (std::size_t c = 0; c < 3; ++c) {
             if (with[c] > 250 || room[c] > 250) continue;
             const double sum = linearOf(without[c]) + linearOf(room[c]) * double{kDimRoom} / double{kWorkRoom};
-            ASSERT_NEAR(linearOf(with[c]), sum, 0.006) << k;
+            ASSERT_GT(linearOf(with[c]), sum - 0.006) << k;
+            more += linearOf(with[c]) > sum + 0.006 && without[0] + without[1] > 60 ? 1 : 0;
         }
     }
     EXPECT_EQ(black, 0);
     EXPECT_GT(lit, 500);
+    EXPECT_LT(more, 0.05 * 3 * lit) << "channels of what projectors light";
     EXPECT_GT(floor, 5000) << "what the table does not fill was black";
     EXPECT_EQ(renderer.warnings().size(), 0U);
 }
