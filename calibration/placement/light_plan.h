@@ -48,7 +48,7 @@ struct LightMap {
 struct LightWish {
     double pixelsPerMillimetre = 2.0;           ///< more is worth no more
     Angle mostIncidence = Angle::degrees(70.0); ///< beyond it light is spread so thinly that it counts as none
-    double mostBlur = 0.002;                    ///< metres; a map's worst colour
+    double mostBlur = 0.001;                    ///< metres; a map's worst colour
 };
 
 /// A device as light meets it: the side that looks up at rest and lies open, in a number of joint states, which also

@@ -98,12 +98,14 @@ ShowCaption captionOf(const View& view, double quantum) {
     const double told = quantum * std::floor(local / quantum);
     const WeatherHour& now = view.weather;
     const std::string degrees = std::to_string(std::lround(now.temperature)) + " \u00B0C, ";
-    const std::string wind = std::to_string(std::lround(now.windSpeed)) + " m/s";
-    const Words from = windFrom(now.windFrom), coming = comingOf(view, local), sky = skyOf(now);
+    const Words coming = comingOf(view, local), sky = skyOf(now), from = windFrom(now.windFrom);
+    const std::string speed = std::to_string(std::lround(now.windSpeed)) + " m/s";
+    const Words wind = now.windSpeed < 0.5 ? Words{"no wind", "windstill"}
+                                           : Words{"wind " + speed + " from the " + from.english,
+                                                   "Wind " + speed + " aus " + from.german};
     ShowCaption caption;
     caption.title = joined(dayName(told), ", ", Words(clockText(told)));
-    caption.sentence = {degrees + sky.english + ", wind " + wind + " from the " + from.english + ". " + coming.english,
-                        degrees + sky.german + ", Wind " + wind + " aus " + from.german + ". " + coming.german};
+    caption.sentence = joined(joined(joined(Words(degrees), "", sky), ", ", wind), ". ", coming);
     return caption;
 }
 

@@ -25,7 +25,7 @@ constexpr double kBarWidth = 320.0;
 
 const QColor kInk(255, 255, 255);
 const QColor kPlate(14, 18, 22, 168); ///< pictures are of any brightness
-const QColor kVeil(14, 18, 22, 240);  ///< over what is no longer true
+const QColor kVeil(14, 18, 22);       ///< over what is no longer true
 const QColor kPlateOfHelp(14, 18, 22, 226);
 
 struct Way {
