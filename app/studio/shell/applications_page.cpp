@@ -108,21 +108,34 @@ private:
         painter.drawEllipse(badge);
         paintPictogram(painter, Pictogram::hand, badge.adjusted(6, 8, -4, -2), Qt::white, 0.35);
     }
+    /// Rather smaller than cut: the largest size, in pixels from `most` down, that fits.
+    template <class Fits> static void setLargest(QFont& font, int most, const Fits& fits) {
+        constexpr int kLeast = 11;
+        for (int pixels = most; pixels >= kLeast; --pixels) {
+            font.setPixelSize(pixels);
+            if (fits()) return;
+        }
+    }
     void paintWords(QPainter& painter, double top) const {
         const Palette& colors = currentPalette();
         const QRectF room(16.0, top + 10.0, width() - 32.0, height() - top - 14.0);
         QFont title = font();
-        title.setPixelSize(17);
         title.setWeight(QFont::DemiBold);
+        setLargest(title, 17, [&] { return QFontMetricsF(title).horizontalAdvance(text()) <= room.width(); });
         painter.setFont(title);
         painter.setPen(colors.text);
         painter.drawText(room, Qt::AlignLeft | Qt::AlignTop,
                          QFontMetricsF(title).elidedText(text(), Qt::ElideRight, room.width()));
         QFont sentence = font();
-        sentence.setPixelSize(14);
+        const QRectF below = room.adjusted(0.0, 28.0, 0.0, 2.0);
+        setLargest(sentence, 14, [&] {
+            const QRectF taken = QFontMetricsF(sentence).boundingRect(QRectF(0.0, 0.0, below.width(), 1e4),
+                                                                      Qt::TextWordWrap, accessibleDescription());
+            return taken.height() <= below.height();
+        });
         painter.setFont(sentence);
         painter.setPen(colors.textMuted);
-        painter.drawText(room.adjusted(0.0, 28.0, 0.0, 0.0), Qt::TextWordWrap, accessibleDescription());
+        painter.drawText(below, Qt::TextWordWrap, accessibleDescription());
     }
 
     Studio& studio_;
