@@ -195,7 +195,8 @@ HeightGrid AmbientProgram::wish(double lag) const {
     waves.insert(waves.end(), sloping_.begin(), sloping_.end());
     for (int j = 0; j < grid.rows; ++j) {
         for (int i = 0; i < grid.columns; ++i) {
-            float& height = grid.heights[static_cast<std::size_t>(j * grid.columns + i)];
+            float& height = grid.heights[static_cast<std::size_t>(j) * static_cast<std::size_t>(grid.columns) +
+                                         static_cast<std::size_t>(i)];
             height = std::max(height, static_cast<float>(kSeaLevel + heightOf(waves, placeAt(grid, i, j))));
         }
     }
