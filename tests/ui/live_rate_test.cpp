@@ -66,6 +66,8 @@ struct Rates {
     double drawing = 0.0; ///< milliseconds that a frame took, the median
     double stall = 0.0;   ///< milliseconds
     double left = 1.0;    ///< share of the processors that other programs left to this one
+    int matches = 0;      ///< that reached the window
+    int frames = 0;       ///< painted
 };
 
 /// The event loop as the program runs it: asleep while nothing happens.
@@ -115,9 +117,11 @@ std::vector<Rates> measure(Studio& studio, const ViewportWidget& view, int count
         const double seconds = std::chrono::duration<double>(SteadyTime::now() - start).count();
         const auto middle = took.begin() + static_cast<std::ptrdiff_t>(took.size() / 2);
         std::nth_element(took.begin(), middle, took.end());
-        all.push_back({matches / seconds, static_cast<double>(view.framesPainted() - before) / seconds,
-                       view.frameResolution(), took.empty() ? 0.0 : *middle, watch.takeLongest(),
-                       std::clamp(1.0 - (othersSeconds() - others) / (processors * seconds), 0.1, 1.0)});
+        const auto frames = static_cast<int>(view.framesPainted() - before);
+        all.push_back({matches / seconds, frames / seconds, view.frameResolution(), took.empty() ? 0.0 : *middle,
+                       watch.takeLongest(),
+                       std::clamp(1.0 - (othersSeconds() - others) / (processors * seconds), 0.1, 1.0), matches,
+                       frames});
     }
     QObject::disconnect(counting);
     return all;
@@ -135,27 +139,27 @@ TEST_F(WindowRate, ThirtyMatchesASecondAreSeenWhileALargeTargetMoves) {
     ASSERT_EQ(studio_.document.state().target.target->solid.mesh.triangles.size(), 70'000U);
     run(std::chrono::seconds(3)); // until the picture has found its resolution
     int shown = 0, matched = 0, smooth = 0;
-    double painted = 0.0, matches = 0.0;
+    int painted = 0, matches = 0;
     for (const Rates& rates : measure(studio_, *view, kSeconds)) {
         const double wanted =
             std::min(rates.left * kWanted, rates.drawn > kCoarsest ? HUGE_VAL : kNearly * 1000.0 / rates.drawing);
         shown += rates.painted >= wanted - 0.5; // counted in whole frames
         matched += rates.matched >= rates.left * kWanted - 0.5;
         smooth += rates.stall <= kLongestStall / rates.left;
-        painted += rates.painted;
-        matches += rates.matched;
+        painted += rates.frames;
+        matches += rates.matches;
         std::printf("viewport %dx%d: %.1f matches/s to the window, %.1f painted/s of %.1f, drawn at %.2f in %.1f ms, "
                     "longest stall %.1f ms, %.0f %% of the processors left\n",
                     view->width(), view->height(), rates.matched, rates.painted, wanted, rates.drawn, rates.drawing,
                     rates.stall, 100.0 * rates.left);
     }
-    RecordProperty("painted", static_cast<int>(painted / kSeconds));
+    RecordProperty("painted", painted / kSeconds);
     std::printf("of %d seconds: %d shown as often as wanted, %d matched, %d without a stall\n", kSeconds, shown,
                 matched, smooth);
     EXPECT_GE(shown, kShare * kSeconds);
     EXPECT_GE(matched, kShare * kSeconds);
     EXPECT_GE(smooth, kShare * kSeconds);
-    EXPECT_LE(painted, matches + 1.0) << "no match is painted twice";
+    EXPECT_LE(painted, matches + 1) << "no match is painted twice; one may have come before the first second";
 }
 
 // A rig that is dragged at 60 edits a second, as handles on the model will do.
