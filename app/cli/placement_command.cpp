@@ -138,7 +138,7 @@ void plan(const PlacementArguments& arguments, const Session& session) {
         best = bestProjectorPlace(device, *lens, low, high,
                                   arguments.project.empty() ? std::span<const CalibratedCamera>() : hanging, wish,
                                   progress.part(0.2, 1.0));
-    if (best && best->light.bestFocus.back() > 0.0) { // whoever hangs it focuses it
+    if (best && best->light.bestFocus.back() > 0.0) { // a projector that is hung is focused then
         if (arguments.project.empty()) hanging.clear(), focus.clear();
         hanging.push_back(best->camera);
         focus.push_back({focusOf({}, arguments).aperture, best->light.bestFocus.back()});

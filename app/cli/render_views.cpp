@@ -36,8 +36,10 @@ void checkRequest(const ShowFrame& frame, const ViewRequest& request) {
     if (request.observer) checkPlace("--observer", *request.observer, kSeesNothing);
     for (const glm::vec3& hand : request.hands)
         checkPlace("--hand", hand, "it is not above the table, so it is in no light");
+    if (request.handsTracked && request.hands.empty())
+        throw InvalidInput("--hands-tracked", "there is no hand that could be tracked", "add --hand X,Y,Z");
     if (request.view == ViewRequest::View::lab) return;
-    if (!request.hands.empty() || request.handsTracked)
+    if (!request.hands.empty())
         throw InvalidInput("--hand", "only the lab has visitors", "use it with --view lab, or leave it out");
     if (request.ambient > 0.0)
         throw InvalidInput("--ambient", "only the lab has the light of a room",

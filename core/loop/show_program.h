@@ -45,7 +45,7 @@ struct ShowMoment {
     std::shared_ptr<const MatchField> field;          ///< whose frame a target of voxels fills; may be empty
     std::shared_ptr<const Installation> installation; ///< what stands in the room; always there
     glm::mat4 worldFromDevice{1.0F};                  ///< predicted as `bodies` are
-    std::optional<glm::vec3> eye; ///< of the viewer who is followed, predicted likewise, world metres; none: nobody
+    std::optional<glm::vec3> eye; ///< of the viewer who is followed, predicted likewise, world metres; empty: none is
     std::span<const ShowInput> inputs;     ///< since the frame before, the oldest first
     Language language = Language::english; ///< of what it writes into its scene
 };

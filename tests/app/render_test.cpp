@@ -127,6 +127,7 @@ TEST_F(Render, AHandInTheLabShadowsTheProjectorAndTheRoomLightsTheShadow) {
     const Image away = with({"--hand", "0,0.3,0.8"});
     EXPECT_TRUE(same(away, open)) << "a hand outside of the light";
     expectRefused({"--view", "eye", "--hand", "0,0.3,0"}, "--view lab");
+    expectRefused({"--view", "lab", "--hands-tracked"}, "--hand X,Y,Z");
     expectRefused({"--view", "lab", "--hand", "0,0.3"}, "three numbers");
     expectRefused({"--view", "lab", "--hand", ""}, "empty");
     expectRefused({"--view", "lab", "--ambient", "-1"}, "--ambient");

@@ -78,7 +78,7 @@ TEST(LightDock, MapFollowsTheRoomAndTheBestPlaceIsHungByOneStep) {
     window.studio().document.setInstallation(before);
     ASSERT_TRUE(eventually(isAsBefore, std::chrono::seconds(30)));
 
-    // Without its aperture nobody knows how sharp light is; measured blur tells it. A focus is one step of undo.
+    // How sharp light is follows from the aperture or from measured blur alone. A focus is one step of undo.
     auto* shown = window.find<QComboBox>("rig.light.shown");
     shown->setCurrentIndex(3);
     EXPECT_TRUE(window.text("rig.light.focus.note").startsWith("For all states alike it is best focused at "))

@@ -24,8 +24,8 @@ public:
     void setForVisitors(bool on);
     /// An application begins: its ways to play appear for some seconds.
     void begin();
-    /// An application is being opened, and so much of it is done (negative: nobody knows): what showed before is
-    /// veiled.
+    /// Covers what showed before while an application is opened. `fraction`: the share that is done, negative where it
+    /// is unknown.
     void setOpening(const Words& title, double fraction);
     /// It is there, or could not be opened.
     void endOpening();

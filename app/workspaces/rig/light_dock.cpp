@@ -349,7 +349,8 @@ void RigLight::showFocus() {
     aperture_->setValue(projector->focus.aperture);
     focused_->setValue(projector->focus.focusDistance);
     if (!found_) return;
-    const bool isOfNow = found_->now.blurKnown == (projector->focus.aperture > 0.0);
+    const auto& measured = found_->room->projectors;
+    const bool isOfNow = !measured.empty() && measured.front().focus == projector->focus;
     focusNote_->setEnabled(isOfNow);
     if (isOfNow) focusNote_->setText(focusText(lights ? found_->now : LightMap{}, projector->focus));
 }
