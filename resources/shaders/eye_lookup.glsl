@@ -20,7 +20,7 @@ uniform vec4 lookupArea; // least and largest x, z, metres
 const float kFeather = 0.025; // of the picture's side, over which it fades out at its border
 const float kAreaFade = 0.008; // metres, over which it fades out around the area of the table
 const float kSlack = 0.0004;  // metres between a point and the depth that stands for it
-const float kTapSpacing = 1.0; // texels
+const float kTapSpacing = 0.7; // texels; by 1 a pixel about as large as a texel has one tap, which is no mean of what it covers
 const float kMostTaps = 8.0;  // along one side of a footprint
 
 // Weights of the four texels of a bilinear tap, in textureGather's order.

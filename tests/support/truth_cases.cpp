@@ -1,11 +1,12 @@
 #include "tests/support/truth_cases.h"
-#include "tests/support/cut_tablet.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <numbers>
 #include <stdexcept>
+
+#include "core/rig/templates/bundled_rigs.h"
 
 namespace lumorph::test {
 namespace {
@@ -21,7 +22,7 @@ template <typename Row> const Row& find(std::span<const Row> rows, const std::st
 
 } // namespace
 
-TruthDevice truthDevice() { return {std::make_shared<Rig>(test::cutTablet()), defaultSceneInRoom()}; }
+TruthDevice truthDevice() { return {std::make_shared<Rig>(bakedTablet()), defaultSceneInRoom()}; }
 
 std::span<const TruthState> truthStates() {
     static const std::array<TruthState, 8> states{{

@@ -15,12 +15,13 @@
 namespace lumorph {
 namespace {
 
-constexpr int kMostSteps = 64;    // of one walk
-constexpr float kFlat = 1e-4F;    // radians: what turns less is no part of a fold
-constexpr float kOwnShare = 0.5F; // an edge that does this much of the turning is a fold by itself
-constexpr float kAlong = 0.7F;    // cosine up to which two edges run along each other
-constexpr float kSharp = 0.5F;    // radians of turning at one edge, at which a walk ends
-constexpr double kShortest = 2.0; // radii that a fold runs at least, unless it is sharp
+constexpr auto kReached = static_cast<float>(CreaseFinder::kRadius);
+constexpr int kMostSteps = 64;     // of one walk
+constexpr float kFlat = 1e-4F;     // radians: what turns less is no part of a fold
+constexpr float kOwnShare = 0.75F; // an edge that does this much of the turning is a fold by itself
+constexpr float kSharp = 0.5F;     // radians of turning at one edge, at which a walk ends
+constexpr double kShortest = 2.0;  // radii that a fold runs at least, unless it is sharp
+constexpr float kAtVertex = 0.01F; // of an edge's length
 constexpr int kSofteningRounds = 8;
 
 std::vector<std::uint32_t> placesOf(const std::vector<glm::vec3>& positions) {
@@ -64,6 +65,8 @@ CreaseFinder::CreaseFinder(const TriangleMesh& rest) : triangles_(rest.triangles
         for (const Side& side : beside) edgesOf_[side.triangle][side.corner] = static_cast<int>(edges_.size());
         edges_.push_back({a, b, left.triangle, beside[1].triangle});
     }
+    ridges_ = std::make_unique<const RidgeTracer>(rest.positions, triangles_, places_, edges_,
+                                                  static_cast<float>(kRadius), kSharp);
 }
 
 // What the walks of one shape need.
@@ -90,31 +93,35 @@ struct CreaseFinder::Turning {
 // A straight walk over the surface, away from an edge.
 class CreaseFinder::Walk {
 public:
-    Walk(const CreaseFinder& finder, const Turning& turning, float radius)
-        : finder_(finder), turning_(turning), radius_(radius) {}
+    /// Adds up `angles` of what it crosses.
+    Walk(const CreaseFinder& finder, const Turning& turning, std::span<const float> angles)
+        : finder_(finder), turning_(turning), angles_(angles) {}
 
-    // Calls visit(edge, distance, cosine between it and the first edge) for what is crossed on both sides.
-    template <class Visit> void across(std::size_t edge, const Visit& visit) const {
+    /// The turning on both sides of an edge, as across it; without its own.
+    [[nodiscard]] float across(std::size_t edge) const {
         const Edge& e = finder_.edges_[edge];
-        for (const std::uint32_t triangle : {e.left, e.right}) away(edge, triangle, visit);
+        const glm::vec3 middle = 0.5F * (turning_.positions[e.a] + turning_.positions[e.b]);
+        return away(static_cast<int>(edge), e.left, middle, inwards(edge, e.left)) +
+               away(static_cast<int>(edge), e.right, middle, inwards(edge, e.right));
+    }
+    /// The turning on both sides of a line through a triangle.
+    [[nodiscard]] float across(std::uint32_t triangle, const glm::vec3& at, const glm::vec3& along) const {
+        const glm::vec3 out = unit(glm::cross(turning_.normals[triangle], along));
+        return away(-1, triangle, at, out) + away(-1, triangle, at, -out);
     }
 
 private:
-    template <class Visit> void away(std::size_t edge, std::uint32_t triangle, const Visit& visit) const {
-        const auto& shape = turning_.positions;
-        const Edge& first = finder_.edges_[edge];
-        glm::vec3 at = 0.5F * (shape[first.a] + shape[first.b]);
-        glm::vec3 direction = inwards(edge, triangle);
-        float gone = 0.0F;
+    [[nodiscard]] float away(int edge, std::uint32_t triangle, glm::vec3 at, glm::vec3 direction) const {
+        float gone = 0.0F, sum = 0.0F;
         for (int step = 0; step < kMostSteps; ++step) {
             const auto [next, way] = exit(edge, triangle, at, direction);
             gone += way;
-            if (next < 0 || !(gone < radius_)) return;
+            if (next < 0 || !(gone < kReached)) break;
             at += way * direction;
             const auto crossed = static_cast<std::size_t>(next);
+            if (std::abs(turning_.angles[crossed]) > kSharp) break; // that is a fold of its own
             const glm::vec3 along = glm::cross(turning_.normals[triangle], direction);
-            if (std::abs(turning_.angles[crossed]) > kSharp) return; // that is a fold of its own
-            visit(crossed, gone, std::abs(glm::dot(along, turning_.directions[crossed])));
+            sum += std::abs(glm::dot(along, turning_.directions[crossed])) * angles_[crossed];
             // Straight on: the share along the crossed edge stays, that across it goes on in the next triangle.
             const glm::vec3& line = turning_.directions[crossed];
             const float share = glm::dot(direction, line);
@@ -122,8 +129,9 @@ private:
             triangle = e.left == triangle ? e.right : e.left;
             direction =
                 unit(share * line + std::sqrt(std::max(1.0F - share * share, 0.0F)) * inwards(crossed, triangle));
-            edge = crossed;
+            edge = next;
         }
+        return sum;
     }
 
     // Across an edge into one of its triangles.
@@ -133,13 +141,13 @@ private:
     }
 
     // The edge through which a ray leaves a triangle (-1: the border, or none), and the way to it.
-    [[nodiscard]] std::pair<int, float> exit(std::size_t entry, std::uint32_t triangle, const glm::vec3& at,
+    [[nodiscard]] std::pair<int, float> exit(int entry, std::uint32_t triangle, const glm::vec3& at,
                                              const glm::vec3& direction) const {
         const glm::uvec3& t = finder_.triangles_[triangle];
-        std::pair<int, float> best{-1, radius_};
+        std::pair<int, float> best{-1, kReached};
         for (int k = 0; k < 3; ++k) {
             const int edge = finder_.edgesOf_[triangle][k];
-            if (edge == static_cast<int>(entry)) continue;
+            if (edge == entry) continue;
             const glm::vec3& a = turning_.positions[t[k]];
             const glm::vec3& b = turning_.positions[t[(k + 1) % 3]];
             const glm::vec3 inside = glm::cross(turning_.normals[triangle], b - a);
@@ -153,71 +161,80 @@ private:
 
     const CreaseFinder& finder_;
     const Turning& turning_;
-    float radius_;
+    std::span<const float> angles_;
 };
 
-// The turning around each edge, and the same with more weight for what is near.
-struct CreaseFinder::Sums {
-    std::vector<float> whole, near;
-};
-
-CreaseFinder::Sums CreaseFinder::sumsOf(const Turning& turning, float radius) const {
-    const Walk walk(*this, turning, radius);
-    Sums sums{turning.angles, turning.angles};
-    for (std::size_t e = 0; e < edges_.size(); ++e) {
-        if (!(std::abs(turning.angles[e]) > kFlat)) continue;
-        walk.across(e, [&](std::size_t crossed, float distance, float along) {
-            sums.whole[e] += along * turning.angles[crossed];
-            sums.near[e] += along * turning.angles[crossed] * (1.0F - distance / radius);
-        });
-    }
+std::vector<float> CreaseFinder::turningAround(const Turning& turning) const {
+    const Walk walk(*this, turning, turning.angles);
+    std::vector<float> sums = turning.angles;
+    for (std::size_t e = 0; e < edges_.size(); ++e)
+        if (std::abs(turning.angles[e]) > kFlat) sums[e] += walk.across(e);
     return sums;
 }
 
-// Of edges along one bend, the one with the most turning near it.
-bool CreaseFinder::isMiddle(const Turning& turning, const std::vector<float>& near, float radius,
-                            std::size_t edge) const {
-    bool middle = true;
-    Walk(*this, turning, radius).across(edge, [&](std::size_t other, float, float along) {
-        const bool stronger =
-            std::abs(near[other]) > std::abs(near[edge]) || (near[other] == near[edge] && other < edge);
-        if (along > kAlong && near[other] * near[edge] > 0.0F && stronger) middle = false;
-    });
-    return middle;
-}
-
-std::vector<Crease> CreaseFinder::find(std::span<const glm::vec3> positions, const CreaseSearch& search) const {
-    const Turning turning(*this, positions);
-    const auto radius = static_cast<float>(search.radius);
-    const auto threshold = static_cast<float>(search.threshold.inRadians());
-    const Sums sums = sumsOf(turning, radius);
-    std::vector<Crease> creases;
-    std::vector<bool> sharp;
+std::vector<float> CreaseFinder::addEdges(const Turning& turning, float threshold, std::vector<Piece>& pieces) const {
+    std::vector<float> soft = turning.angles;
+    const std::vector<float> sums = turningAround(turning);
     for (std::size_t e = 0; e < edges_.size(); ++e) {
         const float own = turning.angles[e];
-        const bool alone = std::abs(own) >= kOwnShare * std::abs(sums.whole[e]);
-        const float angle = alone && std::abs(own) > std::abs(sums.whole[e]) ? own : sums.whole[e];
-        if (!(std::abs(own) > kFlat) || !(std::abs(angle) >= threshold)) continue;
-        if (!alone && !isMiddle(turning, sums.near, radius, e)) continue;
-        creases.push_back({{edges_[e].a, edges_[e].b}, {edges_[e].left, edges_[e].right}, Angle::radians(angle)});
-        sharp.push_back(alone);
+        if (!(std::abs(own) > kFlat) || std::abs(own) < kOwnShare * std::abs(sums[e])) continue;
+        const float angle = std::abs(own) > std::abs(sums[e]) ? own : sums[e];
+        const bool sharp = std::abs(own) > kSharp;
+        if (sharp || std::abs(angle) >= threshold) soft[e] = 0.0F;
+        if (std::abs(angle) < threshold) continue;
+        const auto [a, b, left, right] = edges_[e];
+        pieces.push_back({{{turning.positions[a], turning.positions[b]},
+                           {turning.normals[left], turning.normals[right]},
+                           {a, b},
+                           Angle::radians(angle)},
+                          {places_[a], places_[b]},
+                          sharp});
     }
-    return withoutScraps(positions, std::move(creases), sharp, kShortest * search.radius);
+    return soft;
 }
 
-// Where a bend meets a border, single edges beside its middle may seem folds of their own.
-std::vector<Crease> CreaseFinder::withoutScraps(std::span<const glm::vec3> positions, std::vector<Crease> creases,
-                                                const std::vector<bool>& sharp, double shortest) const {
-    DisjointSets chains(positions.size());
-    for (const Crease& crease : creases) chains.join(places_[crease.vertices[0]], places_[crease.vertices[1]]);
-    std::map<std::uint32_t, double> lengths;
-    for (std::size_t i = 0; i < creases.size(); ++i) {
-        const auto& [a, b] = creases[i].vertices;
-        lengths[chains.find(places_[a])] +=
-            sharp[i] ? 2.0 * shortest : static_cast<double>(glm::distance(positions[a], positions[b]));
+void CreaseFinder::addRidges(const Turning& turning, std::span<const float> soft, float threshold,
+                             std::vector<Piece>& pieces) const {
+    const Walk walk(*this, turning, soft);
+    for (const RidgePiece& ridge : ridges_->trace(turning.positions, turning.normals, soft)) {
+        const glm::vec3 way = ridge.ends[1] - ridge.ends[0];
+        const float angle = walk.across(ridge.triangle, 0.5F * (ridge.ends[0] + ridge.ends[1]), way);
+        if (std::abs(angle) < threshold) continue;
+        Piece piece{{ridge.ends, {}, {}, Angle::radians(angle)}, {}, false};
+        piece.crease.normals.fill(turning.normals[ridge.triangle]);
+        piece.crease.vertices = ridge.nearest;
+        for (std::size_t k = 0; k < 2; ++k) {
+            // A line through a vertex may come to it along any of its edges.
+            const bool inside = ridge.parts[k] > kAtVertex && ridge.edges[k] >= 0;
+            piece.ends[k] =
+                inside ? static_cast<std::uint32_t>(places_.size()) + static_cast<std::uint32_t>(ridge.edges[k])
+                       : places_[ridge.nearest[k]];
+        }
+        pieces.push_back(piece);
     }
-    std::erase_if(creases,
-                  [&](const Crease& crease) { return lengths[chains.find(places_[crease.vertices[0]])] < shortest; });
+}
+
+std::vector<Crease> CreaseFinder::find(std::span<const glm::vec3> positions, Angle threshold) const {
+    const Turning turning(*this, positions);
+    const auto least = static_cast<float>(threshold.inRadians());
+    std::vector<Piece> pieces;
+    const std::vector<float> soft = addEdges(turning, least, pieces);
+    addRidges(turning, soft, least, pieces);
+    return withoutScraps(pieces);
+}
+
+// A bend that ends, or meets a border, leaves pieces that are no folds.
+std::vector<Crease> CreaseFinder::withoutScraps(const std::vector<Piece>& pieces) const {
+    DisjointSets chains(places_.size() + edges_.size());
+    for (const Piece& piece : pieces) chains.join(piece.ends[0], piece.ends[1]);
+    std::map<std::uint32_t, double> lengths;
+    for (const Piece& piece : pieces)
+        lengths[chains.find(piece.ends[0])] +=
+            piece.sharp ? kShortest * kRadius
+                        : static_cast<double>(glm::distance(piece.crease.ends[0], piece.crease.ends[1]));
+    std::vector<Crease> creases;
+    for (const Piece& piece : pieces)
+        if (lengths[chains.find(piece.ends[0])] >= kShortest * kRadius) creases.push_back(piece.crease);
     return creases;
 }
 
@@ -245,26 +262,24 @@ std::vector<glm::vec3> CreaseFinder::softNormals(std::span<const glm::vec3> posi
     return normals;
 }
 
-CreaseStrips creaseStrips(std::span<const Crease> creases, std::span<const glm::uvec3> triangles,
-                          std::span<const glm::vec3> positions, double width, Angle threshold) {
+CreaseStrips creaseStrips(std::span<const Crease> creases, double width, Angle threshold) {
     CreaseStrips strips;
     const auto half = static_cast<float>(0.5 * width);
     for (const Crease& crease : creases) {
-        const glm::vec3 ends[2] = {positions[crease.vertices[0]], positions[crease.vertices[1]]};
+        const auto& ends = crease.ends;
         const double above = (std::abs(crease.angle.inRadians()) / std::max(threshold.inRadians(), 1e-6)) - 1.0;
         const auto strength = static_cast<float>(std::clamp(2.0 * above, 0.0, 1.0));
         for (int side = 0; side < 2; ++side) {
-            const glm::uvec3& t = triangles[crease.triangles[static_cast<std::size_t>(side)]];
-            const glm::vec3 normal = unit(glm::cross(positions[t.y] - positions[t.x], positions[t.z] - positions[t.x]));
+            const glm::vec3& normal = crease.normals[static_cast<std::size_t>(side)];
             const glm::vec3 along = unit(ends[1] - ends[0]);
             const glm::vec3 out = (side == 0 ? half : -half) * glm::cross(normal, along);
             const auto first = static_cast<std::uint32_t>(strips.positions.size());
-            for (int end = 0; end < 2; ++end)
+            for (std::size_t end = 0; end < 2; ++end)
                 for (const float across : {0.0F, 1.0F}) {
                     strips.positions.push_back(ends[end] + across * out);
                     strips.normals.push_back(normal);
                     strips.across.emplace_back(across, strength);
-                    strips.vertices.push_back(crease.vertices[static_cast<std::size_t>(end)]);
+                    strips.vertices.push_back(crease.vertices[end]);
                 }
             const std::uint32_t near = side == 0 ? 2 : 1;
             const std::uint32_t far = 3 - near;

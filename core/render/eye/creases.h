@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -10,60 +11,63 @@
 
 #include "core/base/units.h"
 #include "core/geometry/triangle_mesh.h"
+#include "core/render/eye/ridges.h"
 
 namespace lumorph {
 
-/// A fold of a surface along one edge of its mesh.
+/// A piece of a fold of a surface.
 struct Crease {
-    std::array<std::uint32_t, 2> vertices{};  ///< of the mesh
-    std::array<std::uint32_t, 2> triangles{}; ///< beside it, to the left seen from the first vertex, and to the right
-    Angle angle;                              ///< by which the surface turns across it; negative in a valley
+    std::array<glm::vec3, 2> ends{};    ///< metres
+    std::array<glm::vec3, 2> normals{}; ///< of the triangles beside it, to the left seen from the first end, and right
+    std::array<std::uint32_t, 2> vertices{}; ///< of the mesh, nearest to the ends
+    Angle angle;                             ///< by which the surface turns across it; negative in a valley
 };
 
-/// How a fold is told from a curve.
-struct CreaseSearch {
-    Angle threshold = Angle::degrees(8.0);
-    double radius = 0.012; ///< metres to either side over which turning counts as one fold
-};
-
-/// Finds the folds of a surface that deforms (R30). A sheet of fine triangles bends over many edges by little each: so
-/// the turning is summed up along a walk over the surface, straight across an edge and to both sides, and of several
-/// edges along one bend the one in its middle counts. Immutable; safe to share between threads.
+/// Finds the folds of a surface that deforms (R30). A sheet bends over many edges by little each: there a fold is the
+/// line where it bends most (RidgeTracer), and turns by what a straight walk across it adds up. What turns at a single
+/// edge is a fold along that edge. Immutable; safe to share between threads.
 class CreaseFinder {
 public:
+    static constexpr double kRadius = 0.012; ///< metres to either side over which turning counts as one fold
+
     /// Vertices at the same place of `rest` count as one. Throws InvalidInput for an index beyond the positions.
     explicit CreaseFinder(const TriangleMesh& rest);
 
     /// The folds that turn by at least the threshold. Positions are one a vertex of the rest mesh, metres.
-    [[nodiscard]] std::vector<Crease> find(std::span<const glm::vec3> positions, const CreaseSearch& search) const;
+    [[nodiscard]] std::vector<Crease> find(std::span<const glm::vec3> positions, Angle threshold) const;
 
     /// Normals of all vertices as if folds narrower than about `radius` metres were round.
     [[nodiscard]] std::vector<glm::vec3> softNormals(std::span<const glm::vec3> positions, double radius) const;
 
 private:
-    struct Edge {
-        std::uint32_t a, b;        ///< vertices, as the left triangle walks along them
-        std::uint32_t left, right; ///< triangles
-    };
+    using Edge = MeshEdge;
     /// Two places side by side, with or without two triangles between them.
     struct Link {
         std::uint32_t a, b;
         float length; ///< at rest
     };
     struct Turning;
-    struct Sums;
     class Walk;
-    [[nodiscard]] Sums sumsOf(const Turning& turning, float radius) const;
-    [[nodiscard]] bool isMiddle(const Turning& turning, const std::vector<float>& near, float radius,
-                                std::size_t edge) const;
-    [[nodiscard]] std::vector<Crease> withoutScraps(std::span<const glm::vec3> positions, std::vector<Crease> creases,
-                                                    const std::vector<bool>& sharp, double shortest) const;
+    /// A crease with what it hangs together with: ends that are the same number are one place.
+    struct Piece {
+        Crease crease;
+        std::array<std::uint32_t, 2> ends{};
+        bool sharp = false;
+    };
+    [[nodiscard]] std::vector<float> turningAround(const Turning& turning) const;
+    /// Returns the angles of the edges that are left to be parts of ridges; 0 for the others.
+    [[nodiscard]] std::vector<float> addEdges(const Turning& turning, float threshold,
+                                              std::vector<Piece>& pieces) const;
+    void addRidges(const Turning& turning, std::span<const float> soft, float threshold,
+                   std::vector<Piece>& pieces) const;
+    [[nodiscard]] std::vector<Crease> withoutScraps(const std::vector<Piece>& pieces) const;
 
     std::vector<glm::uvec3> triangles_; ///< of the mesh's vertices
     std::vector<std::uint32_t> places_; ///< for each vertex the first at its place
     std::vector<Edge> edges_;           ///< between two triangles
     std::vector<Link> links_;
     std::vector<glm::ivec3> edgesOf_; ///< for each triangle its edges, -1 at the border
+    std::unique_ptr<const RidgeTracer> ridges_;
 };
 
 /// Vertices of strips along creases, to be drawn upon the surface.
@@ -75,7 +79,6 @@ struct CreaseStrips {
     std::vector<glm::uvec3> triangles;
 };
 /// Strips `width` metres wide that fold with the surface; their strength grows from nothing at the threshold.
-[[nodiscard]] CreaseStrips creaseStrips(std::span<const Crease> creases, std::span<const glm::uvec3> triangles,
-                                        std::span<const glm::vec3> positions, double width, Angle threshold);
+[[nodiscard]] CreaseStrips creaseStrips(std::span<const Crease> creases, double width, Angle threshold);
 
 } // namespace lumorph

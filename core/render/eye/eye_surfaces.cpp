@@ -152,8 +152,8 @@ void EyeSurfaces::updateSkin(const ShowFrame& frame) {
 
 void EyeSurfaces::updateCreases(const std::vector<glm::vec3>& positions) {
     const TriangleMesh& rest = skinSource_->cutMesh();
-    const std::vector<Crease> creases = creaseFinder_->find(positions, {creases_.threshold});
-    const CreaseStrips strips = creaseStrips(creases, rest.triangles, positions, creases_.width, creases_.threshold);
+    const std::vector<Crease> creases = creaseFinder_->find(positions, creases_.threshold);
+    const CreaseStrips strips = creaseStrips(creases, creases_.width, creases_.threshold);
     if (strips.triangles.empty()) return;
     std::vector<glm::vec3> restPositions;
     for (const std::uint32_t vertex : strips.vertices) restPositions.push_back(rest.positions[vertex]);
