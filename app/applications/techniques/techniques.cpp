@@ -59,8 +59,11 @@ void addCubes(Scene& scene, bool visible) {
 
 Material skinOf(int key) {
     switch (key) {
-    case kBump:
-        return readyMaterial("Brick");
+    case kBump: {
+        Material material = readyMaterial("Brick");
+        material.normalStrength = 1.6F;
+        return material;
+    }
     case kAnimated: {
         Material material = readyMaterial("Caustics");
         material.colorTexture.velocity = {0.02F, 0.008F};
@@ -79,6 +82,12 @@ Material skinOf(int key) {
     default:
         return readyMaterial("Paper");
     }
+}
+
+/// To 28 degrees above the table, so that relief and raised corners throw long shadows; on the table it is as bright.
+void lowerSun(SceneItem& sun) {
+    sun.position = {-0.72F, 0.46F, -0.49F};
+    std::get<LightItem>(sun.kind).intensity = 1.5;
 }
 
 /// Leaves the scene of a technique without it.
@@ -156,7 +165,9 @@ Scene techniqueScene(int key, bool on) {
         throw InvalidInput("technique " + std::to_string(key), "there is none of this number",
                            "choose one from 0 to 6");
     Scene scene = defaultScene();
-    turnSun(scene, kDay, key == kBump || key == kShadows ? 18.0 : 0.0);
+    const bool sunTurns = key == kBump || key == kShadows;
+    if (sunTurns) lowerSun(scene.items.front());
+    turnSun(scene, kDay, sunTurns ? 18.0 : 0.0);
     scene.items.push_back(shape(key));
     addCubes(scene, key == kCubes);
     scene.device.material = skinOf(key);
