@@ -89,9 +89,10 @@ void addDemoCommand(CLI::App& app, const Session& session) {
         return known ? std::string() : "there is no demo '" + name + "'; there are: " + demoNames();
     });
     CLI::Option* seconds =
-        command->add_option("--seconds", options->play.seconds, "Without a window: how long it lasts")
-            ->check(CLI::Range(0.1, 600.0))
-            ->capture_default_str();
+        command
+            ->add_option("--seconds", options->play.seconds,
+                         "Without a window: how long it lasts (default: 6; of a video as long as it shows new things)")
+            ->check(CLI::Range(0.1, 600.0));
     CLI::Option* record =
         command->add_option("--record", options->record, "Without a window: a video of the lit device, OUT.mp4");
     CLI::Option* picture =
@@ -131,6 +132,7 @@ void addDemoCommand(CLI::App& app, const Session& session) {
         options->play.inputs = options->inputs;
         options->play.kept = options->kept;
         options->play.language = options->language == "de" ? Language::german : Language::english;
+        if (!*seconds && *record) options->play.seconds = demo.filmSeconds;
         if (*size) options->play.size = evenSize({options->size[0], options->size[1]});
         if (*seconds || *record || *picture || *size || *inputs || *keep || *seed || options->play.json) {
             fetchForecast(options->play.told);

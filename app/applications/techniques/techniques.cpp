@@ -199,6 +199,7 @@ Demo techniquesDemo() {
         .program = [](const ProgramStart&, const Progress&) -> std::unique_ptr<ShowProgram> {
             return std::make_unique<TechniquesProgram>();
         },
+        .filmSeconds = (kHoles - kPlain) * (TechniquesProgram::kWithout + TechniquesProgram::kWith),
         .compares = true};
 }
 
