@@ -8,6 +8,20 @@
 
 namespace lumorph {
 
+Material seaMaterial() {
+    Material sea = readyMaterial("Water");
+    sea.name = "Sea";
+    sea.color = {0.02F, 0.27F, 0.45F};
+    sea.colorTexture = readyMaterial("Caustics").colorTexture;
+    sea.normalMaps[0].tile = glm::vec2(0.080F);
+    sea.normalMaps[1].tile = glm::vec2(0.047F);
+    sea.normalStrength = 0.30F;
+    sea.roughness = 0.16F;
+    sea.reflection = 0.85F;
+    sea.refraction = 0.92F;
+    return sea;
+}
+
 Scene waterScene() {
     enum WaterId { kWaterSun = 1, kWaterDay, kSea, kBuoy, kCrate };
     Scene scene = defaultScene();
@@ -25,7 +39,7 @@ Scene waterScene() {
     SceneItem water = demoItem(kSea, "Sea", sea);
     water.role = ItemRole::split;
     water.position.y = kSheet + 0.018F;
-    water.material = readyMaterial("Water");
+    water.material = seaMaterial();
     scene.items.push_back(water);
 
     SceneItem buoy = demoItem(kBuoy, "Buoy", ShapeItem{ShapeItem::Form::sphere, glm::vec3(0.024F)});
