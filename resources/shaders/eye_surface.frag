@@ -46,7 +46,7 @@ uniform vec4 optics; // reflection, refraction, 1 / refractive index, blur of pi
 uniform float onFloor; // 1: the picture lies on the ground that is seen through the surface; 0: on the surface itself
 uniform mat4 worldFromSurface;
 
-const float kLoss = 11.0; // 1 / m: after a ninth of a metre the ground is seen in the surface's colour
+const float kLoss = 8.0; // 1 / m: after an eighth of a metre the ground is seen in the surface's colour
 
 // What lies where the refracted ray ends, `way` metres on.
 vec3 floorAt(vec3 inward, float way) {

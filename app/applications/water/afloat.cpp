@@ -14,9 +14,10 @@ constexpr double kCarries = 0.5;   ///< of water that runs, metres a second squa
 constexpr double kSlides = 0.04;   ///< down a wave, likewise: it mostly goes up and down
 constexpr double kFloatDrag = 0.9; ///< 1 / s
 constexpr double kBounce = 0.4;
-constexpr double kFalls = 2.6;       ///< metres a second squared: slow enough to be seen
-constexpr double kSailsFrom = 0.004; ///< metres a second, from which on a boat turns
-constexpr double kTurns = 1.6;       ///< 1 / s
+constexpr double kFalls = 2.6;                           ///< metres a second squared: slow enough to be seen
+constexpr double kSailsFrom = 0.004;                     ///< metres a second, from which on a boat turns
+constexpr double kFollowsSlope = 0.85, kBoatHeels = 0.5; ///< of the water's slope: a keel rights it
+constexpr double kTurns = 1.6;                           ///< 1 / s
 
 /// Down the waves, and with the water where it runs to the low side.
 void move(Float& one, const glm::dvec2& wave, const Push& push, double step) {
@@ -51,7 +52,7 @@ bool drift(Float& one, const SeaSurface& sea, const Push& push, double step) {
     one.item.position = {
         glm::dvec3(one.at.x, SeaSurface::kLevel + sea.heightAt(one.at) + one.lift + one.above, one.at.y)};
     const glm::quat yaw = glm::angleAxis(static_cast<float>(-one.heading), glm::vec3(0.0F, 1.0F, 0.0F));
-    one.item.rotation = alongSlope(slope) * yaw;
+    one.item.rotation = alongSlope((one.sails ? kBoatHeels : kFollowsSlope) * slope) * yaw;
     return fell && one.above <= 0.0;
 }
 

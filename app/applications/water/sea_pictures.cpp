@@ -110,8 +110,8 @@ Image foamPicture() {
             const double much = (y + 0.5) / 64.0;
             const double turn = 2.0 * 3.14159265358979 * x / 256.0;
             const glm::dvec2 around(std::cos(turn), std::sin(turn)); // so that it repeats
-            const double lace = 1.0 - std::abs(softNoise(4.0 * around + glm::dvec2(0.0, 5.0 * much), 21)) * 1.6 -
-                                0.5 * std::abs(softNoise(9.0 * around - glm::dvec2(7.0 * much, 0.0), 22));
+            const double lace = 1.0 - 1.5 * std::abs(softNoise(2.0 * around + glm::dvec2(0.0, 1.2 * much), 21)) -
+                                0.6 * std::abs(softNoise(4.5 * around - glm::dvec2(1.6 * much, 0.0), 22));
             const double alpha =
                 soft(1.0 - 1.15 * much - 0.22, 1.0 - 1.15 * much + 0.22, lace) * soft(0.02, 0.25, much);
             picture.at(x, y) = pixelOf(glm::dvec3(1.0), 0.95 * alpha);

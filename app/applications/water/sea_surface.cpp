@@ -21,8 +21,8 @@ constexpr double kCell = 2.0 * 0.105 / (kC - 1); ///< metres, in both directions
 constexpr double kLongest = 0.1;                 ///< metres; waves below it get sharp crests
 constexpr double kSharpens = 120.0;              ///< 1 / m, by their square
 constexpr double kFloatProbe = 0.008;            ///< metres to each side
-constexpr double kSteep = 0.62, kBreaks = 0.35;  ///< slope where foam begins, and how much more is all white
-constexpr double kFoamLasts = 1.3;               ///< seconds until 1/e
+constexpr double kSteep = 0.72, kBreaks = 0.6;   ///< slope where foam begins, and how much more is all white
+constexpr double kFoamLasts = 0.9;               ///< seconds until 1/e
 constexpr double kFoamComes = 4.0;               ///< 1 / s
 constexpr double kLineWide = 0.0028;             ///< metres of foam along what lies in the water
 constexpr double kRimFoam = 0.50, kRimLine = 0.0022;
@@ -112,7 +112,7 @@ SeaSurface::SeaSurface()
             const glm::dvec2 at = cellPlace(i, j), inset = kSeaHalf - glm::abs(at);
             const double far = std::min(inset.x, inset.y) / kRimLine;
             rim_.push_back(static_cast<float>(kRimFoam * std::exp(-far)));
-            lace_.push_back(static_cast<float>(18.0 * (at.x + 0.4 * at.y) + 1.6 * softNoise(at / 0.008, 3)));
+            lace_.push_back(static_cast<float>(9.0 * (at.x + 0.4 * at.y) + 0.35 * softNoise(at / 0.006, 3)));
         }
     foam_ = rim_;
 }
