@@ -21,7 +21,7 @@ constexpr double kTouchLasts = 1.6;                  ///< seconds
 struct Drive {
     double radius, often, lasts, strength;
 };
-constexpr Drive kShort{0.0080, 4.0, 0.30, 9.0};
+constexpr Drive kShort{0.0080, 4.0, 0.34, 13.0};
 constexpr Drive kLong{0.036, 0.9, 0.60, 0.50};
 
 constexpr double kPush = 0.50;       ///< m / s^2 on what floats in a young ring

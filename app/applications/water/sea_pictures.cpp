@@ -46,12 +46,12 @@ double soft(double from, double to, double value) {
 
 /// The sea's ground from above, without light on it: a sandbank on two sides, deep water between, stones.
 glm::dvec3 groundAt(const glm::dvec2& at) {
-    const double bank = soft(0.02, 0.10, -0.55 * at.x + 0.75 * at.y + 0.018 * softNoise(at / 0.035, 11));
-    const double reef = soft(0.05, 0.0, glm::length((at - glm::dvec2(0.062, -0.045)) / glm::dvec2(1.2, 0.9)));
+    const double bank = soft(0.01, 0.085, -0.55 * at.x + 0.75 * at.y + 0.018 * softNoise(at / 0.035, 11));
+    const double reef = soft(0.062, 0.01, glm::length((at - glm::dvec2(0.062, -0.045)) / glm::dvec2(1.2, 0.9)));
     const double shallow = std::max(bank, 0.75 * reef);
     const double ribs = std::sin(at.x * 520.0 + at.y * 300.0 + 4.0 * softNoise(at / 0.018, 12));
     const double grain = 0.05 * ribs + 0.05 * softNoise(at / 0.0035, 13);
-    glm::dvec3 sand = glm::mix(glm::dvec3(0.07, 0.25, 0.42), glm::dvec3(0.97, 0.93, 0.74), shallow) * (1.0 + grain);
+    glm::dvec3 sand = glm::mix(glm::dvec3(0.08, 0.36, 0.52), glm::dvec3(0.97, 0.93, 0.74), shallow) * (1.0 + grain);
     const double stone = soft(0.38, 0.52, softNoise(at / 0.014, 14) + 0.35 * softNoise(at / 0.006, 15));
     return glm::mix(sand, sand * glm::dvec3(0.34, 0.40, 0.36), 0.8 * stone);
 }
@@ -110,11 +110,11 @@ Image foamPicture() {
             const double much = (y + 0.5) / 64.0;
             const double turn = 2.0 * 3.14159265358979 * x / 256.0;
             const glm::dvec2 around(std::cos(turn), std::sin(turn)); // so that it repeats
-            const double lace = 1.0 - 1.5 * std::abs(softNoise(2.0 * around + glm::dvec2(0.0, 1.2 * much), 21)) -
-                                0.6 * std::abs(softNoise(4.5 * around - glm::dvec2(1.6 * much, 0.0), 22));
+            const double lace = 0.52 + 0.42 * softNoise(3.0 * around + glm::dvec2(0.0, 2.0 * much), 21) +
+                                0.30 * softNoise(8.0 * around - glm::dvec2(4.0 * much, 0.0), 22);
             const double alpha =
                 soft(1.0 - 1.15 * much - 0.22, 1.0 - 1.15 * much + 0.22, lace) * soft(0.02, 0.25, much);
-            picture.at(x, y) = pixelOf(glm::dvec3(1.0), 0.95 * alpha);
+            picture.at(x, y) = pixelOf(glm::dvec3(1.0), 0.82 * alpha);
         }
     return picture;
 }

@@ -11,11 +11,11 @@ namespace lumorph {
 Material seaMaterial() {
     Material sea = readyMaterial("Water");
     sea.name = "Sea";
-    sea.color = {0.01F, 0.30F, 0.50F};
+    sea.color = {0.02F, 0.38F, 0.58F};
     sea.colorTexture = readyMaterial("Caustics").colorTexture;
     sea.normalMaps[0].tile = glm::vec2(0.080F);
     sea.normalMaps[1].tile = glm::vec2(0.047F);
-    sea.normalStrength = 0.30F;
+    sea.normalStrength = 0.17F;
     sea.roughness = 0.16F;
     sea.reflection = 0.60F;
     sea.refraction = 0.92F;

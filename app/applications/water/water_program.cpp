@@ -32,6 +32,7 @@ constexpr double kOwnFirst = 1.0, kOwnEvery = 5.0; ///< seconds, of the drops th
 constexpr std::size_t kOwnFloats = 4;
 constexpr double kOwnSpeed = 0.020; ///< of the boat that sails by itself, metres a second
 constexpr glm::dvec2 kBoatFrom{-0.005, 0.040};
+constexpr float kBoatScale = 1.2F;
 constexpr const char* kSeaModel = "sea surface";
 enum ProgramItem : int { kSeaItem = 60, kBoatItem, kBeaconItem, kLampItem, kGlowItem, kFirstThrown = 100 };
 
@@ -90,8 +91,9 @@ void WaterProgram::begin() {
     boat_ = {};
     boat_.item = modelItem(kBoatItem, "Boat", sea::kBoatModel);
     boat_.at = kBoatFrom;
-    boat_.half = {0.0145, 0.0052};
-    boat_.radius = 0.011;
+    boat_.item.scale = glm::vec3(kBoatScale);
+    boat_.half = static_cast<double>(kBoatScale) * glm::dvec2(0.0145, 0.0052);
+    boat_.radius = 0.013;
     boat_.homesick = 0.0;
     boat_.sails = true;
     harbour_ = {};
