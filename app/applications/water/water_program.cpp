@@ -32,6 +32,7 @@ constexpr double kOwnFirst = 1.0, kOwnEvery = 5.0; ///< seconds, of the drops th
 constexpr std::size_t kOwnFloats = 4;
 constexpr double kOwnSpeed = 0.020; ///< of the boat that sails by itself, metres a second
 constexpr glm::dvec2 kBoatFrom{-0.005, 0.040};
+constexpr double kBeaconRadius = 0.0074; ///< metres
 constexpr float kBoatScale = 1.2F;
 constexpr const char* kSeaModel = "sea surface";
 enum ProgramItem : int { kSeaItem = 60, kBoatItem, kBeaconItem, kLampItem, kGlowItem, kFirstThrown = 100 };
@@ -213,7 +214,7 @@ std::vector<Float*> WaterProgram::afloat() {
 void WaterProgram::advance(const ShowMoment& moment, double step) {
     ripples_.advance(step);
     water_.setHeights(waves_, storm_, moment.seconds, slosh_, ripples_);
-    const std::vector<Float*> all = afloat();
+    std::vector<Float*> all = afloat();
     std::vector<sea::Waterline> lines;
     for (Float* one : all) {
         if (drift(*one, water_, {slosh_.slope(), &ripples_}, step)) {
@@ -223,12 +224,16 @@ void WaterProgram::advance(const ShowMoment& moment, double step) {
         }
         if (one->above <= 0.0) lines.push_back(one->waterline());
     }
+    Float beacon; // things go round it
+    beacon.at = harbour_.place();
+    beacon.radius = kBeaconRadius * harbour_.up();
+    all.push_back(&beacon);
     keepApart(all);
     if (harbour_.advance(step, boat_.at)) {
         hear("water.harbour", 1.0, harbour_.place());
         ripples_.touch(harbour_.place(), 0.6);
     }
-    if (harbour_.up() > 0.5) lines.push_back({harbour_.place(), glm::dvec2(0.0074), 0.0074, 0.0});
+    if (harbour_.up() > 0.5) lines.push_back({harbour_.place(), glm::dvec2(kBeaconRadius), kBeaconRadius, 0.0});
     water_.advanceFoam(step, lines);
 }
 
