@@ -124,14 +124,6 @@ void main() {
     vec3 view = normalize(eyePosition - worldPosition);
     vec3 diffuse = mix(bounceLight, skyLight, 0.5 + 0.5 * n.y);
     vec3 shine = vec3(0.0);
-#ifdef SPECULAR
-    float rough = gloss.x;
-#if defined(REFRACTION) && (defined(NORMAL_A) || defined(NORMAL_B))
-    // A pixel that holds many slopes of ripples shines as a rougher one: else glints flicker (Tokuyoshi and Kaplanyan).
-    vec3 nx = dFdx(n), ny = dFdy(n);
-    rough = min(rough + min(0.5 * (dot(nx, nx) + dot(ny, ny)), 0.18), 1.0);
-#endif
-#endif
 #if LIGHTS > 0
     for (int i = 0; i < LIGHTS; ++i) {
         vec3 towards = lightPlaces[i].xyz - lightPlaces[i].w * worldPosition;
@@ -153,8 +145,8 @@ void main() {
         vec3 halfway = normalize(towards + view);
         float nh = max(dot(n, halfway), 0.0);
         float lh = max(dot(towards, halfway), 0.0);
-        float d = nh * nh * (rough - 1.0) + 1.00001;
-        shine += arriving * (rough / (d * d * max(0.1, lh * lh) * gloss.y * 4.0));
+        float d = nh * nh * (gloss.x - 1.0) + 1.00001;
+        shine += arriving * (gloss.x / (d * d * max(0.1, lh * lh) * gloss.y * 4.0));
 #endif
     }
 #endif

@@ -95,7 +95,7 @@ Image sidePicture() {
             const double shafts = std::sin(3.0 * turn + 2.0 * deep) + 0.7 * std::sin(7.0 * turn - 1.5 * deep) +
                                   0.5 * std::sin(13.0 * turn + deep);
             const glm::dvec3 color =
-                glm::mix(glm::dvec3(0.24, 0.72, 0.78), glm::dvec3(0.03, 0.20, 0.36), soft(-0.05, 0.75, deep));
+                glm::mix(glm::dvec3(0.30, 0.78, 0.82), glm::dvec3(0.04, 0.30, 0.48), soft(-0.05, 0.75, deep));
             const double line = 0.35 * std::exp(-deep / 0.025);
             picture.at(x, y) = pixelOf(color * (1.0 + 0.10 * shafts * (1.0 - deep)) + line);
         }
@@ -158,7 +158,7 @@ Material sideMaterial() {
     side.roughness = 0.2F;
     side.reflection = 0.35F;
     side.emission = {0.02F, 0.20F, 0.27F};
-    side.emissionStrength = 0.5F;
+    side.emissionStrength = 0.8F;
     return side;
 }
 

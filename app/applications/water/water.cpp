@@ -16,7 +16,7 @@ Material seaMaterial() {
     sea.normalMaps[0].tile = glm::vec2(0.080F);
     sea.normalMaps[1].tile = glm::vec2(0.047F);
     sea.normalStrength = 0.17F;
-    sea.roughness = 0.16F;
+    sea.roughness = 0.19F;
     sea.reflection = 0.60F;
     sea.refraction = 0.92F;
     return sea;

@@ -196,6 +196,7 @@ void WaterProgram::throwIn() {
     one.item.name = "Thrown in " + std::to_string(number + 1);
     std::get<ShapeItem>(one.item.kind).size *= 0.75F;
     one.item.material.color = kColors[number % kColors.size()];
+    one.item.material.colorTexture = {}; // painted
     one.half *= 0.75;
     one.radius *= 0.75;
     one.lift *= 0.75;

@@ -101,7 +101,7 @@ TEST(EyeOptics, MovingPicturesOnClearWaterLieOnTheGroundWhereSnellSeesIt) {
         stage.scene.items.push_back(water);
         const LinearPicture picture = stage.draw(); // over a plain table
         stage.scene.table.material.colorTexture = EyeStage::textured("squares", 0.05F);
-        stage.scene.table.material.colorTexture.turn = Angle::radians(static_cast<double>(-turn));
+        stage.scene.table.material.colorTexture.turn = Angle::radians(static_cast<double>(turn));
         const Agreement result =
             withTable(stage, picture, [&](const Met& met, const glm::dvec3& view) -> std::optional<glm::dvec3> {
                 if (met.normal.y < 0.999) return std::nullopt;
