@@ -89,7 +89,7 @@ SceneModel boat() {
                           {{0.0012F, 0.0280F, 0.0F}, {0.0012F, 0.0072F, 0.0F}, {0.0155F, 0.0066F, 0.0016F}}});
     Material sail = painted("Sail", {0.98F, 0.96F, 0.90F}, 0.9F);
     sail.emission = {0.95F, 0.93F, 0.85F}; // light comes through the cloth
-    sail.emissionStrength = 0.30F;
+    sail.emissionStrength = 0.50F;
     return modelWith(std::move(parts), {painted("Hull", {0.80F, 0.16F, 0.12F}, 0.3F),
                                         painted("Deck", {0.78F, 0.58F, 0.36F}, 0.6F), sail});
 }

@@ -24,7 +24,7 @@ struct Drive {
 constexpr Drive kShort{0.0080, 4.0, 0.34, 13.0};
 constexpr Drive kLong{0.036, 0.9, 0.60, 0.50};
 
-constexpr double kPush = 0.50;       ///< m / s^2 on what floats in a young ring
+constexpr double kPush = 0.22;       ///< m / s^2 on what floats in a young ring
 constexpr double kFrontWide = 0.016; ///< metres
 constexpr double kPushLasts = 0.8;   ///< seconds
 

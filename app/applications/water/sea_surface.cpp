@@ -173,7 +173,7 @@ void SeaSurface::addFoamAlong(const Waterline& line) {
         for (int i = std::max(first.x, 0); i <= std::min(last.x, kC - 1); ++i) {
             const double far = std::max(0.0, fromLine(line, cellPlace(i, j))) / kLineWide;
             float& foam = foam_[cell(i, j)];
-            foam = std::max(foam, static_cast<float>(0.85 * std::exp(-far * far)));
+            foam = std::max(foam, static_cast<float>(0.72 * std::exp(-far * far)));
         }
 }
 
