@@ -240,6 +240,9 @@ SoundBoard SoundBoard::synthesised() {
     voices.push_back(once("ice.bump", floes(), 0.0, 1.0, 0.08));
     voices.push_back(once("ice.drip", dripping(), 0.0, 1.0, 0.3));
     voices.push_back(once("ice.splash", splashing(), 0.0, 1.0, 0.15));
+    voices.push_back(once("water.drop", dripping(), 0.0, 1.0, 0.3));
+    voices.push_back(once("water.splash", splashing(), 0.0, 1.0, 0.15));
+    voices.push_back(once("water.harbour", fanfare(), 0.0, 1.0, 0.5));
     voices.push_back(loop("navigation.fly", flying(), 0.0, 1.0, 0.7, 1.4));
     voices.push_back(once(kHandsOffSound, warning(), 0.0, 1.0, 1.0));
     return SoundBoard(std::move(voices));

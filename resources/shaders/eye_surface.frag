@@ -42,6 +42,18 @@ const float metal = 0.0;
 #if defined(REFLECTION) || defined(REFRACTION)
 uniform vec4 optics; // reflection, refraction, 1 / refractive index, blur of pictures seen through it
 #endif
+#if defined(COLOR_TEXTURE) && defined(REFRACTION)
+uniform float onFloor; // 1: the picture lies on the ground that is seen through the surface; 0: on the surface itself
+uniform mat4 worldFromSurface;
+
+const float kLoss = 8.0; // 1 / m: after an eighth of a metre the ground is seen in the surface's colour
+
+// What lies where the refracted ray ends, `way` metres on.
+vec3 floorAt(vec3 inward, float way) {
+    vec2 there = place + way * (transpose(mat3(worldFromSurface)) * inward).xz;
+    return texture(colorPicture, mat2(colorTurn.xy, colorTurn.zw) * there + colorShift).rgb;
+}
+#endif
 
 #if defined(NORMAL_A) || defined(NORMAL_B)
 // The slopes of a normal map along the surface's coordinates (right, and up on the page).
@@ -85,7 +97,11 @@ void main() {
 #endif
     vec4 base = baseColor;
 #ifdef COLOR_TEXTURE
-    base *= texture(colorPicture, mat2(colorTurn.xy, colorTurn.zw) * place + colorShift);
+    vec4 picture = texture(colorPicture, mat2(colorTurn.xy, colorTurn.zw) * place + colorShift);
+#ifdef REFRACTION
+    picture = mix(picture, vec4(1.0), onFloor);
+#endif
+    base *= picture;
 #endif
 #ifdef CUTOUT
     if (base.a < 0.5) discard;
@@ -142,7 +158,15 @@ void main() {
     vec3 inward = refract(-view, n, optics.z);
     float way = max(worldPosition.y, 0.0) / max(-inward.y, 0.2);
     vec3 bed = tableAt(worldPosition.xz + way * inward.xz, optics.w);
-    light = mix(light, bed * mix(vec3(1.0), base.rgb, clamp(30.0 * way, 0.0, 1.0)), optics.y);
+    vec3 through = bed * mix(vec3(1.0), base.rgb, clamp(30.0 * way, 0.0, 1.0));
+#ifdef COLOR_TEXTURE
+    // Of each colour a share is lost with every metre: turquoise where it is shallow, dark where it is deep.
+    vec3 kept = pow(max(base.rgb, 1e-4), vec3(kLoss * way));
+    vec3 deep = mix(base.rgb * diffuse, floorAt(inward, way) * diffuse, kept);
+    light = mix(mix(light, through, optics.y), mix(light, deep, optics.y), onFloor);
+#else
+    light = mix(light, through, optics.y);
+#endif
 #endif
 #ifdef REFLECTION
     float grazing = 1.0 - clamp(dot(n, view), 0.0, 1.0);

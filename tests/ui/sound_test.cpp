@@ -71,9 +71,10 @@ protected:
 };
 
 TEST(SoundBoard, HasEverySoundOfTheApplicationsAndEachIsHeardAndDoesNotClip) {
-    for (const char* name : {"labyrinth.roll", "labyrinth.bump", "labyrinth.pickup", "labyrinth.fall", "labyrinth.goal",
-                             "ambient.rain", "ambient.wind", "ambient.wave", "ambient.thunder", "ice.crack", "ice.bump",
-                             "ice.drip", "ice.splash", "navigation.fly", "studio.hands_off"}) {
+    for (const char* name :
+         {"labyrinth.roll", "labyrinth.bump", "labyrinth.pickup", "labyrinth.fall", "labyrinth.goal", "ambient.rain",
+          "ambient.wind", "ambient.wave", "ambient.thunder", "ice.crack", "ice.bump", "ice.drip", "ice.splash",
+          "water.drop", "water.splash", "water.harbour", "navigation.fly", "studio.hands_off"}) {
         const SoundVoice* voice = board()->find(name);
         ASSERT_NE(voice, nullptr) << name;
         double sum = 0.0, loudest = 0.0;

@@ -8,6 +8,20 @@
 
 namespace lumorph {
 
+Material seaMaterial() {
+    Material sea = readyMaterial("Water");
+    sea.name = "Sea";
+    sea.color = {0.02F, 0.38F, 0.58F};
+    sea.colorTexture = readyMaterial("Caustics").colorTexture;
+    sea.normalMaps[0].tile = glm::vec2(0.080F);
+    sea.normalMaps[1].tile = glm::vec2(0.047F);
+    sea.normalStrength = 0.17F;
+    sea.roughness = 0.19F;
+    sea.reflection = 0.60F;
+    sea.refraction = 0.92F;
+    return sea;
+}
+
 Scene waterScene() {
     enum WaterId { kWaterSun = 1, kWaterDay, kSea, kBuoy, kCrate };
     Scene scene = defaultScene();
@@ -18,14 +32,14 @@ Scene waterScene() {
     // The long wave's phase is that of the buoy, which rises and falls with it.
     sea.waves = {{0.012, 0.30, 6.0, Angle::degrees(15.0), Angle::degrees(228.0)},
                  {0.006, 0.17, 4.5, Angle::degrees(-40.0), {}},
-                 {0.0018, 0.050, 0.8, Angle::degrees(35.0), {}},
-                 {0.0010, 0.031, 0.55, Angle::degrees(-20.0), {}},
-                 {0.0005, 0.019, 0.4, Angle::degrees(80.0), {}}};
+                 {0.0013, 0.050, 0.8, Angle::degrees(35.0), {}},
+                 {0.0007, 0.031, 0.55, Angle::degrees(-20.0), {}},
+                 {0.0004, 0.019, 0.4, Angle::degrees(80.0), {}}};
     sea.floor = -0.036;
     SceneItem water = demoItem(kSea, "Sea", sea);
     water.role = ItemRole::split;
     water.position.y = kSheet + 0.018F;
-    water.material = readyMaterial("Water");
+    water.material = seaMaterial();
     scene.items.push_back(water);
 
     SceneItem buoy = demoItem(kBuoy, "Buoy", ShapeItem{ShapeItem::Form::sphere, glm::vec3(0.024F)});
@@ -37,7 +51,7 @@ Scene waterScene() {
     scene.items.push_back(buoy);
 
     SceneItem crate = demoItem(kCrate, "Crate", ShapeItem{ShapeItem::Form::box, {0.028F, 0.020F, 0.022F}});
-    crate.position = {0.050F, 0.045F, -0.020F};
+    crate.position = {0.006F, 0.045F, -0.047F};
     crate.rotation = glm::angleAxis(0.12F, glm::vec3(0.0F, 0.0F, 1.0F));
     crate.motion = {Angle::degrees(9.0).inRadians(), 0.004, 6.0};
     crate.material = readyMaterial("Wood");

@@ -3,79 +3,114 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <functional>
 #include <string>
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
-#include <glm/gtc/quaternion.hpp>
+#include <glm/matrix.hpp>
+#include <glm/vec4.hpp>
 
 #include "app/applications/demo_items.h"
+#include "app/applications/water/sea_pictures.h"
 #include "app/applications/water/water.h"
-#include "core/scene/posed_scene.h"
 
 namespace lumorph {
+
+using sea::Float;
+
 namespace {
 
-constexpr glm::dvec2 kHalf{0.105, 0.075}; ///< of the water, metres
-constexpr double kCarries = 0.5;          ///< of water that runs, metres a second squared for a slope of 1
-constexpr double kSlides = 0.04;          ///< down a wave, likewise: it mostly goes up and down
-constexpr double kDrag = 0.9;             ///< 1 / s
-constexpr double kHome = 0.5;             ///< by which it comes back to its place, 1 / s^2
-constexpr double kBounce = 0.4;
-constexpr double kProbe = 0.008;   ///< half the distance over which a slope is read, metres
-constexpr double kNotch = 0.08;    ///< of the storm
-constexpr double kHeldSpeed = 0.4; ///< of the storm, a second
-constexpr double kStormTime = 0.8; ///< seconds in which waves follow
-constexpr double kMostStep = 0.1;  ///< seconds; after a pause the rest is left out
-constexpr int kFirstThrown = 100;  ///< ids of items
+constexpr double kNotch = 0.08;       ///< of the storm
+constexpr double kHeldSpeed = 0.4;    ///< of the storm, a second
+constexpr double kStormTime = 0.8;    ///< seconds in which waves follow
+constexpr double kMostStep = 0.1;     ///< seconds; after a pause the rest is left out
+constexpr double kHandOn = 0.010;     ///< metres over the water in which a hand touches it
+constexpr double kWake = 0.012;       ///< metres between the touches of a pointer that is drawn over the water
+constexpr double kWakeTime = 0.14;    ///< seconds between them, at least
+constexpr double kThrownFrom = 0.075; ///< metres over the water
+constexpr double kOwnFirst = 1.0, kOwnEvery = 5.0; ///< seconds, of the drops that fall by themselves
+constexpr std::size_t kOwnFloats = 4;
+constexpr double kOwnSpeed = 0.020; ///< of the boat that sails by itself, metres a second
+constexpr glm::dvec2 kBoatFrom{-0.005, 0.040};
+constexpr double kBeaconRadius = 0.0074; ///< metres
+constexpr float kBoatScale = 1.2F;
+constexpr const char* kSeaModel = "sea surface";
+enum ProgramItem : int { kSeaItem = 60, kBoatItem, kBeaconItem, kLampItem, kGlowItem, kFirstThrown = 100 };
 
 bool isAfloat(const SceneItem& item) { return std::holds_alternative<ShapeItem>(item.kind); }
 
-/// Turns +Y to the normal of a slope along x and z.
-glm::quat along(const glm::dvec2& slope) {
-    const glm::vec3 normal = glm::normalize(glm::vec3(-slope.x, 1.0, -slope.y));
-    const glm::vec3 axis(normal.z, 0.0F, -normal.x);
-    const float length = glm::length(axis);
-    return length < 1e-6F ? glm::quat(1.0F, 0.0F, 0.0F, 0.0F)
-                          : glm::angleAxis(std::asin(std::min(1.0F, length)), axis / length);
+SceneItem modelItem(int id, const char* name, const char* model) {
+    return demoItem(id, name, MeshItem{.model = model});
 }
 
-std::array<float, 5> around(const HeightItem& sea, double seconds, const glm::dvec2& at) {
-    const auto p = static_cast<float>(kProbe);
-    const glm::vec2 middle(at);
-    const std::array<glm::vec2, 5> places{middle, middle + glm::vec2(p, 0.0F), middle - glm::vec2(p, 0.0F),
-                                          middle + glm::vec2(0.0F, p), middle - glm::vec2(0.0F, p)};
-    std::array<float, 5> heights{};
-    sampleHeights(sea, nullptr, seconds, places, heights);
-    return heights;
+glm::dvec2 ownPlace(int number) {
+    const glm::dvec2 at(0.37 * number, 9.5);
+    return 0.72 * sea::Ripples::kHalf * glm::dvec2(sea::softNoise(at * 7.0, 31), sea::softNoise(at * 7.0, 32));
 }
 
 } // namespace
 
 WaterProgram::WaterProgram() : still_(waterScene()) {
-    assets_ = loadSceneAssets(still_, {});
-    const auto firstFloat = std::stable_partition(still_.items.begin(), still_.items.end(), std::not_fn(isAfloat));
-    for (auto item = firstFloat; item != still_.items.end(); ++item) {
-        const glm::vec3 size = std::get<ShapeItem>(item->kind).size;
-        Float one{*item, {item->position.x, item->position.z}, {item->position.x, item->position.z}, {}, 0.0, 0.0};
-        one.item.motion = {};
-        one.radius = 0.5 * std::max(size.x, size.z);
-        one.lift = 0.12 * size.y;
-        first_.push_back(std::move(one));
+    auto assets = std::make_shared<SceneAssets>(*loadSceneAssets(still_, {}));
+    sea::addSeaPictures(*assets);
+    sea::addHarbourModels(*assets);
+    assets_ = std::move(assets);
+    for (const SceneItem& item : still_.items) {
+        if (isAfloat(item)) addFirst(item);
+        if (const auto* heights = std::get_if<HeightItem>(&item.kind)) waves_ = heights->waves;
     }
-    still_.items.erase(firstFloat, still_.items.end());
+    std::erase_if(still_.items, [](const SceneItem& item) {
+        return isAfloat(item) || std::holds_alternative<HeightItem>(item.kind);
+    });
+    const Words title{"A sea you can feel", "Ein Meer, das man fühlt"};
     caption_ = std::make_shared<const ShowCaption>(ShowCaption{
-        {"A sea you can feel", "Ein Meer, das man fühlt"},
-        {"Lean it, and the water runs. The wheel, + and - make storm or calm; N throws something in.",
-         "Neige es, und das Wasser läuft. Das Rad, + und - machen Sturm oder Stille; N wirft etwas hinein."}});
+        title,
+        {"Touch the water, or lean it: bring the boat into the ring of light. The wheel, + and - make storm "
+         "or calm; N throws something in.",
+         "Berühre oder neige das Wasser: Bring das Boot in den Lichtring. Das Rad, + und - machen Sturm "
+         "oder Stille; N wirft etwas hinein."}});
+    arrived_ = std::make_shared<const ShowCaption>(ShowCaption{
+        title,
+        {"Safe in the harbour! The next light is coming up.", "Sicher im Hafen! Das nächste Licht taucht schon auf."}});
     begin();
+}
+
+void WaterProgram::addFirst(const SceneItem& item) {
+    const auto& shape = std::get<ShapeItem>(item.kind);
+    Float one;
+    one.item = item;
+    one.item.motion = {};
+    one.home = one.at = {item.position.x, item.position.z};
+    one.half = 0.5 * glm::dvec2(shape.size.x, shape.size.z);
+    one.radius = 0.5 * std::max(shape.size.x, shape.size.z);
+    one.lift = 0.12 * shape.size.y;
+    first_.push_back(std::move(one));
 }
 
 void WaterProgram::begin() {
     floats_ = first_;
+    boat_ = {};
+    boat_.item = modelItem(kBoatItem, "Boat", sea::kBoatModel);
+    boat_.at = kBoatFrom;
+    boat_.item.scale = glm::vec3(kBoatScale);
+    boat_.half = static_cast<double>(kBoatScale) * glm::dvec2(0.0145, 0.0052);
+    boat_.radius = 0.013;
+    boat_.homesick = 0.0;
+    boat_.sails = true;
+    harbour_ = {};
     wanted_ = 1.0;
     held_ = 0.0;
+    alone_ = 0.0;
+    played_ = 0;
+}
+
+void WaterProgram::hear(const char* sound, double strength, const glm::dvec2& place) {
+    sounds_.push_back({sound, strength, {glm::dvec3(place.x, sea::SeaSurface::kLevel, place.y)}});
+}
+
+void WaterProgram::touch(const glm::dvec2& place, double strength) {
+    ripples_.touch(place, strength);
+    hear("water.drop", std::min(1.0, strength), place);
 }
 
 void WaterProgram::listen(const ShowMoment& moment) {
@@ -85,20 +120,74 @@ void WaterProgram::listen(const ShowMoment& moment) {
         if (input.name == "wheel") wanted_ += kNotch * std::clamp(input.value, -8.0, 8.0);
         if (input.name == "key.in") held_ = input.value > 0.5 ? 1.0 : 0.0;
         if (input.name == "key.out") held_ = input.value > 0.5 ? -1.0 : 0.0;
+        if (input.name == "pointer.held") pressed_ = input.value > 0.5;
     }
+    const double step = std::clamp(moment.step, 0.0, kMostStep);
     if (visitor_.next()) throwIn();
     if (visitor_.restart() || visitor_.left()) begin();
-    const double step = std::clamp(moment.step, 0.0, kMostStep);
+    takeHands(moment);
+    takePointer(step);
+    if (!visitor_.there() && hands_.empty()) play(step);
     wanted_ = std::clamp(wanted_ + kHeldSpeed * held_ * step, kCalmest, kStormiest);
     storm_ += (wanted_ - storm_) * (1.0 - std::exp(-step / kStormTime));
     slosh_.advance(moment.step, visitor_.lean());
+}
+
+/// A tracked hand that comes to the water touches it once; poses that are no numbers are nobody's.
+void WaterProgram::takeHands(const ShowMoment& moment) {
+    const glm::dmat4 deviceFromWorld = glm::inverse(glm::dmat4(moment.worldFromDevice));
+    std::set<std::string> on;
+    for (const ShowBody& body : moment.bodies) {
+        if (body.role != PoseRole::pointer) continue;
+        const glm::dvec4 at = deviceFromWorld * glm::dvec4(body.pose.position, 1.0);
+        const glm::dvec2 place(at.x, at.z);
+        if (!std::isfinite(at.x + at.y + at.z) || glm::any(glm::greaterThan(glm::abs(place), sea::Ripples::kHalf)))
+            continue;
+        if (at.y - sea::SeaSurface::kLevel - water_.heightAt(place) > kHandOn) continue;
+        if (!hands_.contains(body.name)) touch(place, 1.0);
+        on.insert(body.name);
+    }
+    hands_ = std::move(on);
+}
+
+/// A press makes a ring; drawn on, it leaves a wake of small ones.
+void WaterProgram::takePointer(double step) {
+    sinceTouch_ += step;
+    if (!pressed_ || !visitor_.pointer()) return touched_.reset();
+    const glm::dvec2 place = *visitor_.pointer() * sea::Ripples::kHalf;
+    const bool first = !touched_;
+    if (!first && (sinceTouch_ < kWakeTime || glm::distance(*touched_, place) < kWake)) return;
+    touch(place, first ? 1.0 : 0.45);
+    touched_ = place;
+    sinceTouch_ = 0.0;
+}
+
+/// Nobody there: drops fall, now and then something is thrown in, and the boat sails.
+void WaterProgram::play(double step) {
+    alone_ += step;
+    sailHome();
+    if (alone_ < kOwnFirst + kOwnEvery * played_) return;
+    ++played_;
+    if (played_ % 4 == 0)
+        throwIn();
+    else
+        touch(ownPlace(played_), 0.8);
+}
+
+/// Straight to the beacon, and on past others: they are pushed aside.
+void WaterProgram::sailHome() {
+    const glm::dvec2 way = harbour_.place() - boat_.at;
+    const double far = glm::length(way);
+    if (harbour_.shining() || far < 0.5 * sea::Harbour::kReach) return;
+    boat_.velocity = glm::mix(boat_.velocity, way * (kOwnSpeed / far), 0.03);
 }
 
 /// Now a ball, now a box, each beside the last; the oldest that was thrown goes where there are too many.
 void WaterProgram::throwIn() {
     constexpr std::array<glm::vec3, 4> kColors{
         {{0.95F, 0.78F, 0.18F}, {0.22F, 0.55F, 0.90F}, {0.93F, 0.93F, 0.90F}, {0.30F, 0.72F, 0.40F}}};
-    if (floats_.size() >= kMostFloats) floats_.erase(floats_.begin() + static_cast<std::ptrdiff_t>(first_.size()));
+    const std::size_t most = visitor_.there() ? kMostFloats : kOwnFloats;
+    if (floats_.size() >= most) floats_.erase(floats_.begin() + static_cast<std::ptrdiff_t>(first_.size()));
     int id = kFirstThrown;
     while (std::ranges::find(floats_, id, [](const Float& one) { return one.item.id; }) != floats_.end()) ++id;
     const auto number = static_cast<std::size_t>(id - kFirstThrown);
@@ -107,76 +196,95 @@ void WaterProgram::throwIn() {
     one.item.name = "Thrown in " + std::to_string(number + 1);
     std::get<ShapeItem>(one.item.kind).size *= 0.75F;
     one.item.material.color = kColors[number % kColors.size()];
+    one.item.material.colorTexture = {}; // painted
+    one.half *= 0.75;
     one.radius *= 0.75;
     one.lift *= 0.75;
+    one.above = kThrownFrom;
     const double turn = 2.4 * static_cast<double>(number); // the golden angle spreads them
-    one.home = one.at = 0.6 * kHalf * glm::dvec2(std::cos(turn), std::sin(turn));
+    one.home = one.at = 0.6 * sea::Ripples::kHalf * glm::dvec2(std::cos(turn), std::sin(turn));
     floats_.push_back(std::move(one));
 }
 
-void WaterProgram::drift(const HeightItem& sea, double seconds, double step) {
-    for (Float& one : floats_) {
-        const std::array<float, 5> heights = around(sea, seconds, one.at);
-        const glm::dvec2 wave = glm::dvec2(heights[1] - heights[2], heights[3] - heights[4]) / (2.0 * kProbe);
-        // Down the waves, and with the water where it runs to the low side.
-        one.velocity +=
-            step * (kHome * (one.home - one.at) + kCarries * slosh_.slope() - kSlides * wave - kDrag * one.velocity);
-        one.at += step * one.velocity;
-        one.item.position = {glm::dvec3(one.at.x, heights[0] + slosh_.heightAt(one.at) + one.lift, one.at.y)};
-        one.item.rotation = along(wave + slosh_.slope());
-    }
-    keepApart();
+std::vector<Float*> WaterProgram::afloat() {
+    std::vector<Float*> all{&boat_};
+    for (Float& one : floats_) all.push_back(&one);
+    return all;
 }
 
-void WaterProgram::keepApart() {
-    for (std::size_t i = 0; i < floats_.size(); ++i)
-        for (std::size_t j = i + 1; j < floats_.size(); ++j) {
-            Float &a = floats_[i], &b = floats_[j];
-            const glm::dvec2 way = b.at - a.at;
-            const double far = glm::length(way), least = a.radius + b.radius;
-            if (far >= least || far < 1e-9) continue;
-            const glm::dvec2 push = way * (0.5 * (least - far) / far);
-            a.at -= push;
-            b.at += push;
-            std::swap(a.velocity, b.velocity);
+void WaterProgram::advance(const ShowMoment& moment, double step) {
+    ripples_.advance(step);
+    water_.setHeights(waves_, storm_, moment.seconds, slosh_, ripples_);
+    std::vector<Float*> all = afloat();
+    std::vector<sea::Waterline> lines;
+    for (Float* one : all) {
+        if (drift(*one, water_, {slosh_.slope(), &ripples_}, step)) {
+            ripples_.touch(one->at, 1.3);
+            water_.splash(one->at, 1.1 * one->radius);
+            hear("water.splash", 0.8, one->at);
         }
-    for (Float& one : floats_)
-        for (int axis = 0; axis < 2; ++axis) {
-            const double most = kHalf[axis] - one.radius;
-            if (std::abs(one.at[axis]) <= most) continue;
-            one.at[axis] = std::copysign(most, one.at[axis]);
-            one.velocity[axis] *= -kBounce;
-        }
+        if (one->above <= 0.0) lines.push_back(one->waterline());
+    }
+    Float beacon; // things go round it
+    beacon.at = harbour_.place();
+    beacon.radius = kBeaconRadius * harbour_.up();
+    all.push_back(&beacon);
+    keepApart(all);
+    if (harbour_.advance(step, boat_.at)) {
+        hear("water.harbour", 1.0, harbour_.place());
+        ripples_.touch(harbour_.place(), 0.6);
+    }
+    if (harbour_.up() > 0.5) lines.push_back({harbour_.place(), glm::dvec2(kBeaconRadius), kBeaconRadius, 0.0});
+    water_.advanceFoam(step, lines);
+}
+
+/// The beacon, its lamp, and the ring of light: it breathes, and runs out once the boat has come.
+void WaterProgram::showHarbour(Scene& scene) const {
+    const glm::dvec2& place = harbour_.place();
+    const double sunk = 0.034 * (1.0 - harbour_.up());
+    const double level = sea::SeaSurface::kLevel + water_.heightAt(place) - sunk;
+    SceneItem beacon = modelItem(kBeaconItem, "Beacon", sea::kBeaconModel);
+    beacon.position = {glm::dvec3(place.x, level, place.y)};
+    beacon.rotation = sea::alongSlope(0.5 * water_.slopeAt(place));
+    SceneItem lamp = modelItem(kLampItem, "Lamp", sea::kLampModel);
+    std::get<MeshItem>(lamp.kind).ownMaterials = false;
+    lamp.scale = glm::vec3(0.0033F);
+    lamp.position = beacon.position + beacon.rotation * glm::vec3(0.0F, static_cast<float>(sea::kBeaconHigh), 0.0F);
+    lamp.material.color = {1.0F, 0.86F, 0.45F};
+    lamp.material.emission = {1.0F, 0.78F, 0.32F};
+    lamp.material.emissionStrength = harbour_.shining() ? 2.0F : 0.7F;
+    SceneItem glow = modelItem(kGlowItem, "Harbour", sea::kGlowModel);
+    glow.opacity = static_cast<float>(harbour_.up() * (harbour_.shining() ? 1.0 : 0.72));
+    glow.visible = glow.opacity > 0.02F;
+    scene.items.insert(scene.items.end(), {std::move(beacon), std::move(lamp), std::move(glow)});
+}
+
+std::shared_ptr<const SceneAssets> WaterProgram::assetsNow() const {
+    auto assets = std::make_shared<SceneAssets>(*assets_);
+    assets->models[kSeaModel] = water_.model();
+    const double run = harbour_.shone();
+    const double radius = sea::Harbour::kReach + 0.010 * (1.0 - (1.0 - run) * (1.0 - run));
+    assets->models[sea::kGlowModel] =
+        sea::glowModel(harbour_.place(), radius, harbour_.shining() ? 0.010 : 0.006,
+                       [this](const glm::dvec2& at) { return sea::SeaSurface::kLevel + water_.heightAt(at); });
+    return assets;
 }
 
 ShowContent WaterProgram::frame(const ShowMoment& moment) {
+    sounds_.clear();
     listen(moment);
+    advance(moment, std::clamp(moment.step, 0.0, kMostStep));
     auto scene = std::make_shared<Scene>(still_);
-    SceneItem& sea = *std::ranges::find_if(
-        scene->items, [](const SceneItem& item) { return std::holds_alternative<HeightItem>(item.kind); });
-    auto& field = std::get<HeightItem>(sea.kind);
-    for (Wave& wave : field.waves) wave.amplitude *= storm_;
-    drift(field, moment.seconds, std::clamp(moment.step, 0.0, kMostStep));
+    scene->items.push_back(modelItem(kSeaItem, "Sea", kSeaModel));
+    for (const Float* one : afloat()) scene->items.push_back(one->item);
+    showHarbour(*scene);
     ShowContent content;
-    HeightGrid felt = gridOf(sea, moment.seconds);
-    std::size_t k = 0;
-    for (int j = 0; j < felt.rows; ++j)
-        for (int i = 0; i < felt.columns; ++i) {
-            const glm::dvec2 share(static_cast<double>(i) / (felt.columns - 1),
-                                   static_cast<double>(j) / (felt.rows - 1));
-            felt.heights[k++] += static_cast<float>(slosh_.heightAt(glm::mix(felt.min, felt.max, share)));
-        }
-    sea.rotation = along(slosh_.slope());
-    const float level = sea.position.y;
-    for (const Float& one : floats_) {
-        scene->items.push_back(one.item);
-        scene->items.back().position.y += level;
-    }
     content.scene = std::move(scene);
-    content.assets = assets_;
-    content.caption = caption_;
-    content.target = std::move(felt);
+    content.assets = assetsNow();
+    content.caption = harbour_.shining() ? arrived_ : caption_;
+    content.target = water_.heights();
     content.following = Following::split;
+    content.sounds = std::move(sounds_);
     return content;
 }
 

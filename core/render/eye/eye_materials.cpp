@@ -127,6 +127,9 @@ void EyeMaterials::apply(Program& program, const Material& material, float opaci
         program.set("gloss", glm::vec2(alpha * alpha, material.roughness + 0.5F));
         program.set("metal", material.metallic);
     }
+    // Moving pictures on something clear are light on the ground beneath it.
+    if ((features & refraction) != 0 && (features & colorTexture) != 0)
+        program.set("onFloor", material.colorTexture.columns * material.colorTexture.rows > 1 ? 1.0F : 0.0F);
     if ((features & (reflection | refraction)) != 0)
         program.set("optics",
                     glm::vec4(material.reflection, material.refraction, 1.0F / std::max(material.refractiveIndex, 1.0F),

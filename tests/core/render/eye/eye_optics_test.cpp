@@ -78,6 +78,42 @@ TEST(EyeOptics, ClearWaterShowsTheTableWhereSnellSeesIt) {
     }
 }
 
+// R28
+TEST(EyeOptics, MovingPicturesOnClearWaterLieOnTheGroundWhereSnellSeesIt) {
+    for (const float turn : {0.0F, 0.6F}) {
+        EyeStage stage;
+        stage.sun().shadows = false;
+        stage.assets->images["squares"] = EyeStage::checks({32, 32}, 16, {230, 10, 20, 255}, {20, 10, 230, 255});
+        stage.assets->images["film"] = EyeStage::checks({64, 32}, 16, {230, 10, 20, 255}, {20, 10, 230, 255});
+        SceneItem water;
+        water.id = 7;
+        water.name = "Water";
+        water.anchor = Anchor::world;
+        water.position = {0.0F, 0.06F, 0.0F};
+        water.rotation = glm::angleAxis(turn, glm::vec3(0.0F, 1.0F, 0.0F));
+        water.material = EyeStage::plain({1.0F, 1.0F, 1.0F});
+        water.material.refraction = 1.0F;
+        water.material.colorTexture = EyeStage::textured("film", 0.05F);
+        water.material.colorTexture.columns = 2; // both pictures are the same squares
+        HeightItem flat;
+        flat.size = {0.16F, 0.12F};
+        water.kind = flat;
+        stage.scene.items.push_back(water);
+        const LinearPicture picture = stage.draw(); // over a plain table
+        stage.scene.table.material.colorTexture = EyeStage::textured("squares", 0.05F);
+        stage.scene.table.material.colorTexture.turn = Angle::radians(static_cast<double>(turn));
+        const Agreement result =
+            withTable(stage, picture, [&](const Met& met, const glm::dvec3& view) -> std::optional<glm::dvec3> {
+                if (met.normal.y < 0.999) return std::nullopt;
+                return glm::refract(view, met.normal, 1.0 / 1.33);
+            });
+        EXPECT_GT(result.judged, 10'000) << turn;
+        EXPECT_GT(result.blue, result.judged / 4) << turn;
+        EXPECT_LT(result.blue, result.judged * 3 / 4) << turn;
+        EXPECT_GE(result.agree, 0.98 * result.judged) << turn;
+    }
+}
+
 TEST(EyeOptics, AMirrorShowsTheTableBeforeIt) {
     EyeStage stage;
     layRedAndBlue(stage);
