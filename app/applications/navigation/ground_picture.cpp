@@ -20,8 +20,9 @@ constexpr double kSideStep = 0.5;  ///< of sides, powers of two
 constexpr double kFurrow = 4.5;    ///< metres
 constexpr double kThinnest = 0.75; ///< pixels, half the width of a road from afar
 constexpr double kGrain = 0.035;
-constexpr double kFeetTo = 2.2;    ///< metres a pixel up to which walls darken the ground at their foot
-constexpr double kFootReach = 3.4; ///< metres
+constexpr glm::vec3 kBoard{0.80F, 0.76F, 0.67F}; ///< on which the map lies
+constexpr double kFeetTo = 2.2;                  ///< metres a pixel up to which walls darken the ground at their foot
+constexpr double kFootReach = 3.4;               ///< metres
 constexpr double kFootShade = 0.5;
 constexpr glm::vec3 kFoot{0.16F, 0.15F, 0.14F}, kHedge{0.22F, 0.34F, 0.17F};
 
@@ -80,7 +81,8 @@ PictureWindow windowFor(const MapView& view) noexcept {
 
 PictureWindow wholeWindow(const Map& map) noexcept {
     const glm::dvec2 size = map.heights.size();
-    return {glm::dvec2(0.0), std::max(size.x, size.y)};
+    const double side = wholeView(size);
+    return {0.5 * (size - side), side};
 }
 
 GroundPicture::GroundPicture(const Map& map, const PictureWindow& window)
@@ -116,11 +118,13 @@ void GroundPicture::measureRow(int row, std::vector<float>& over) const {
         const float coarse =
             std::lerp(std::lerp(north[i], north[i + 1], tu), std::lerp(south[i], south[i + 1], tu), tv);
         const glm::dvec2 place(window_.corner.x + (x + 0.5) * metresAPixel(), y);
-        over[static_cast<std::size_t>(x)] = static_cast<float>(map_->heights.at(place, metresAPixel())) - coarse;
+        over[static_cast<std::size_t>(x)] =
+            map_->holds(place) ? static_cast<float>(map_->heights.at(place, metresAPixel())) - coarse : 0.0F;
     }
 }
 
 glm::vec3 GroundPicture::coverAt(const glm::dvec2& place) const noexcept {
+    if (!map_->holds(place)) return kBoard;
     const glm::ivec2 samples = map_->heights.samples();
     const glm::dvec2 cell = glm::clamp(place / map_->heights.spacing(), glm::dvec2(0.0), glm::dvec2(samples - 1));
     const glm::ivec2 at = glm::min(glm::ivec2(cell), samples - 2);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
@@ -10,19 +11,18 @@
 
 #include "app/applications/demo_items.h"
 #include "app/applications/navigation/shapes.h"
-#include "app/applications/navigation/view_ground.h"
 
 namespace lumorph::navigation {
 namespace {
 
 constexpr const char* kInsetAsset = "navigation inset";
-constexpr int kInsetPixels = 256;                    ///< of the longer side
-constexpr double kInsetMargin = 0.04;                ///< of the longer side
-constexpr double kFromRim = 0.0035;                  ///< device metres
-constexpr double kInsetHeight = ViewGround::kLowest; ///< y, as low as the land goes: never over the rim for who looks
-constexpr double kNearer = 0.055;                    ///< metres towards the eye, before all that stands
-constexpr double kFrameLine = 0.0007;                ///< width of the frame's sides, device metres
-constexpr double kSmallestFrame = 0.0026;            ///< device metres
+constexpr int kInsetPixels = 256;         ///< of the longer side
+constexpr double kInsetMargin = 0.04;     ///< of the longer side
+constexpr double kFromRim = 0.0035;       ///< device metres
+constexpr double kDeviceLower = 0.008;    ///< metres by which the device may lie lower than the land on it
+constexpr double kNearer = 0.055;         ///< metres towards the eye, before all that stands
+constexpr double kFrameLine = 0.0007;     ///< width of the frame's sides, device metres
+constexpr double kSmallestFrame = 0.0026; ///< device metres
 
 /// The land from above with light from the north-west, as on a printed map.
 std::shared_ptr<const Image> pictureOf(const Map& map, const glm::ivec2& pixels) {
@@ -95,11 +95,13 @@ glm::dvec2 Inset::pointAt(const glm::dvec2& place, const glm::dvec3& eye) const 
     return sideOf(eye) * (half_ - kHalf + kFromRim + inner * (place / mapSize_ - 0.5));
 }
 
-void Inset::show(Scene& scene, const MapView& view, const glm::dvec3& eye) const {
+void Inset::show(Scene& scene, const ViewGround& ground, const glm::dvec3& eye) const {
+    const MapView& view = ground.view();
     const auto opacity = static_cast<float>(this->opacity(view));
     if (opacity <= 0.0F) return;
     const glm::dvec2 corner = pointAt(0.5 * mapSize_, eye);
-    const glm::dvec3 middle(corner.x, kInsetHeight, corner.y);
+    const double height = std::max(ViewGround::kLowest, ground.surfaceAt(corner) - kDeviceLower);
+    const glm::dvec3 middle(corner.x, height, corner.y);
     const double share = std::min(kNearer / std::max(glm::distance(eye, middle), 1e-9), 0.5);
     const auto place = [&](SceneItem& item, const glm::dvec3& at, double angle, const glm::dvec3& size) {
         item.position = glm::mix(at, eye, share); // all about the eye, so that it sees the same
@@ -109,11 +111,12 @@ void Inset::show(Scene& scene, const MapView& view, const glm::dvec3& eye) const
     };
     SceneItem sheet =
         demoItem(kInsetItem, "Inset", MeshItem{.model = kInsetAsset, .animation = -1, .ownMaterials = false});
-    place(sheet, middle, sideOf(eye) > 0.0 ? 0.0 : 3.14159265358979, glm::dvec3(1.0));
+    place(sheet, middle, sideOf(eye) > 0.0 ? 0.0 : std::numbers::pi, glm::dvec3(1.0));
     sheet.material.name = "Inset";
     sheet.material.color = glm::vec3(1.0F);
     sheet.material.colorTexture.image = kInsetAsset;
     sheet.material.colorTexture.tile = glm::vec2(1.0F);
+    sheet.material.alpha = Material::Alpha::blend;
     sheet.material.unlit = true;
     scene.items.push_back(std::move(sheet));
     const double metre = glm::length(pointAt({1.0, 0.0}, eye) - pointAt({0.0, 0.0}, eye));
@@ -124,10 +127,11 @@ void Inset::show(Scene& scene, const MapView& view, const glm::dvec3& eye) const
         const glm::dvec2 a = corners[k], b = corners[(k + 1) % 4], along = b - a;
         SceneItem side = demoItem(kInsetItem + 1 + static_cast<int>(k), "Inset frame",
                                   ShapeItem{ShapeItem::Form::box, glm::vec3(1.0F)});
-        place(side, {0.5 * (a.x + b.x), kInsetHeight + 0.0004, 0.5 * (a.y + b.y)}, std::atan2(-along.y, along.x),
+        place(side, {0.5 * (a.x + b.x), height + 0.0004, 0.5 * (a.y + b.y)}, std::atan2(-along.y, along.x),
               {glm::length(along) + kFrameLine, 0.0003, kFrameLine});
         side.material.name = "Inset frame";
         side.material.color = {0.80F, 0.12F, 0.08F};
+        side.material.alpha = Material::Alpha::blend;
         side.material.unlit = true;
         scene.items.push_back(std::move(side));
     }

@@ -6,6 +6,7 @@
 
 #include "app/applications/navigation/map.h"
 #include "app/applications/navigation/map_view.h"
+#include "app/applications/navigation/view_ground.h"
 #include "core/base/image.h"
 #include "core/scene/scene.h"
 #include "core/scene/scene_assets.h"
@@ -24,7 +25,7 @@ public:
 
     void addTo(SceneAssets& assets) const;
     /// Adds its items as an eye sees them before all that stands (device metres).
-    void show(Scene& scene, const MapView& view, const glm::dvec3& eye) const;
+    void show(Scene& scene, const ViewGround& ground, const glm::dvec3& eye) const;
     /// 0 to 1, by the width of a view.
     [[nodiscard]] double opacity(const MapView& view) const noexcept;
     /// Where a place is on it, in x and z of the device, for an eye before or behind the device.

@@ -104,6 +104,8 @@ struct Map {
         return static_cast<std::size_t>(sample.y) * static_cast<std::size_t>(heights.samples().x) +
                static_cast<std::size_t>(sample.x);
     }
+    /// Whether a place is on it; beyond it there is the bare board on which it lies.
+    [[nodiscard]] bool holds(const glm::dvec2& place) const noexcept;
     /// The sample nearest to a place.
     [[nodiscard]] glm::ivec2 sampleAt(const glm::dvec2& place) const noexcept;
     [[nodiscard]] bool isWater(glm::ivec2 sample) const noexcept;

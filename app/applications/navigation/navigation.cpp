@@ -149,9 +149,7 @@ NavigationProgram::NavigationProgram(std::uint64_t seed, std::shared_ptr<const M
 
 MapView NavigationProgram::home() const noexcept {
     const glm::dvec2 size = map_->heights.size();
-    MapView view{0.5 * size, 0.8 * widestView(size), 0.0};
-    if (!map_->places.empty()) view.centre = glm::mix(view.centre, map_->places.front().at, 0.4);
-    return within(view, size, kNarrowest);
+    return {0.5 * size, wholeView(size), 0.0};
 }
 
 void NavigationProgram::flyTo(const std::string& name) {
@@ -307,7 +305,7 @@ std::shared_ptr<const Scene> NavigationProgram::scene(const ShowMoment& moment) 
     auto scene = std::make_shared<Scene>(setting_);
     scene->viewDependence.on = bending_ != Bending::off;
     labels_.show(*scene);
-    inset_->show(*scene, view_, eyeOf(moment));
+    inset_->show(*scene, *ground_, eyeOf(moment));
     if (cloud_) addCloud(*scene, *cloud_);
     if (rain_.dry()) return scene;
     SceneItem water =

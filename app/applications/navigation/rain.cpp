@@ -151,7 +151,7 @@ void Rain::fall(const Map& map, const MapView& view, const glm::dvec2& cloud, do
         const double angle = 2.0 * std::numbers::pi * chanceOf({fallen_, 1}, seed_);
         const double far = kCloudRadius * std::sqrt(chanceOf({fallen_, 2}, seed_));
         const glm::dvec2 point = cloud + far * glm::dvec2(std::cos(angle), std::sin(angle));
-        if (!overSheet(point)) continue;
+        if (!overSheet(point) || !map.holds(view.placeAt(point))) continue;
         Drop drop;
         drop.to = map.sampleAt(view.placeAt(point));
         drop.at = map.heights.spacing() * glm::dvec2(drop.to);
@@ -297,7 +297,7 @@ SceneModel Rain::model(const Map& map, const ViewGround& ground, double cloudHei
         if (share > 0.0)
             addStreak(primitive, point, std::lerp(over(point), cloudHeight, share), 0.0075, 0.0003);
         else
-            addStreak(primitive, point, over(point), 0.0012, 0.00022);
+            addStreak(primitive, point, over(point), 0.0008, 0.00016);
     }
     SceneModel made;
     Model::Mesh mesh;
@@ -322,7 +322,7 @@ std::shared_ptr<const Image> rainImage() {
         const float share = static_cast<float>(x) / static_cast<float>(kPicture.x - 1);
         for (int y = 0; y < kBand; ++y) {
             put(x, y, glm::mix(shallow, deep, share), glm::mix(0.16F, 0.95F, share));
-            put(x, y + kBand, wet, 0.55F * share);
+            put(x, y + kBand, wet, 0.72F * share);
         }
     }
     for (int y = 0; y < kRingCell; ++y)
