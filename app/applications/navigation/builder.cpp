@@ -49,12 +49,16 @@ OnLine pointOn(const std::vector<glm::dvec2>& line, double passed) {
 } // namespace
 
 bool Builder::free(const Line& outline, double gap) const {
-    for (const glm::dvec2& corner : outline) {
-        if (map_.waterAt(corner) > ground(corner) - 0.6) return false;
-        for (const Road& street : streets_)
-            if (nearestOn(street.line, corner).distance < 0.5 * street.width + gap) return false;
-    }
     const glm::dvec2 middle = middleOf(outline);
+    Line points = outline; // a street may lead between the corners
+    points.push_back(middle);
+    for (std::size_t k = 0; k < outline.size(); ++k)
+        points.push_back(0.5 * (outline[k] + outline[(k + 1) % outline.size()]));
+    for (const glm::dvec2& point : points) {
+        if (map_.waterAt(point) > ground(point) - 0.6) return false;
+        for (const Road& street : streets_)
+            if (nearestOn(street.line, point).distance < 0.5 * street.width + gap) return false;
+    }
     return std::ranges::none_of(taken_, [&](const Line& other) {
         return glm::distance(other.front(), middle) < 160.0 && overlap(other, outline);
     });
@@ -86,11 +90,14 @@ Building& Builder::add(Line outline, double height, double roof, Building::Roof 
 
 bool Builder::house(const glm::dvec2& at, const glm::dvec2& along, double length, double depth, double storeys) {
     Line body = rectangle(at, along, length - kPartyWall, depth - kPartyWall);
-    if (!free(body, 0.0)) return false;
+    const Line outline = rectangle(at, along, length, depth);
+    if (std::ranges::any_of(outline, [&](const glm::dvec2& corner) { return map_.isWater(map_.sampleAt(corner)); }) ||
+        !free(body, 0.0))
+        return false;
     const double kind = chance(), steep = 0.36 + 0.16 * chance();
     const auto roof = kind < 0.74 ? Building::Roof::gable : kind < 0.95 ? Building::Roof::hip : Building::Roof::flat;
     const double rises = roof == Building::Roof::flat ? 0.0 : steep * std::min(length, depth);
-    Building& building = add(rectangle(at, along, length, depth), 0.8 + 2.9 * storeys + 0.7 * chance(), rises, roof);
+    Building& building = add(outline, 0.8 + 2.9 * storeys + 0.7 * chance(), rises, roof);
     taken_.back() = std::move(body);
     building.walls = oneOf(kWalls);
     building.top = roof == Building::Roof::flat ? Paint::stone : oneOf(kRoofs);
@@ -135,6 +142,10 @@ void Builder::housesAlong(const Line& street, double width, const Quarter& quart
     for (const double side : {-1.0, 1.0})
         for (double next = 5.0; next < length - 5.0;) {
             const double far = glm::distance(pointOn(street, next).at, quarter.middle) / quarter.reach;
+            if (far >= 1.0) {
+                next += 15.0;
+                continue;
+            }
             const bool closed = far < quarter.closed;
             Plot here;
             here.width = width;

@@ -29,7 +29,7 @@ constexpr double kRing = 0.0021;             ///< radius of a ring then, device 
 constexpr int kWetCells = 256;               ///< along the map's longer side
 constexpr double kSoaks = 1.6, kDries = 4.0; ///< seconds in which wetness comes and goes by e
 constexpr float kSeenWet = 0.02F, kLeastWet = 0.002F;
-constexpr double kSwellDrop = 0.002, kSwellFalls = 9.0; ///< metres a drop; seconds in which it falls by e
+constexpr double kSwellDrop = 0.002, kSwellFalls = 6.0; ///< metres a drop; seconds in which it falls by e
 constexpr double kSwellStep = 0.15;                     ///< metres
 
 /// The picture: two bands of colour, and the phases of a ring.

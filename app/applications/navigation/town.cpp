@@ -141,18 +141,16 @@ void bigHouses(Builder& builder) {
 }
 
 /// A main street from the quay over the square to the land, streets along the shore and lanes between them.
-void town(Builder& builder) {
+void townStreets(Builder& builder) {
     const ValleyPlan& plan = builder.plan();
-    const glm::dvec2 middle = plan.town;
-    square(builder);
     const auto at = [&](double along, double inland) { return builder.inTown(along, inland); };
     const auto shoreStreet = [&](double inland, double from, double to) {
         Line line;
         for (double along = from; along < to + 1.0; along += 40.0) line.push_back(at(along, inland));
         return line;
     };
-    builder.road({at(0.0, 22.0), at(0.0, 100.0), middle, at(0.0, 320.0), at(-30.0, 520.0), hamletsOf(plan)[1].at}, 8.0,
-                 kStreet);
+    builder.road({at(0.0, 22.0), at(0.0, 100.0), plan.town, at(0.0, 320.0), at(-30.0, 520.0), hamletsOf(plan)[1].at},
+                 8.0, kStreet);
     builder.road(shoreStreet(22.0, -330.0, 400.0), 9.0, kPaving);
     builder.road(shoreStreet(150.0, -360.0, 390.0), 6.5, kStreet);
     for (const double inland : {78.0, 228.0, 305.0, 385.0})
@@ -160,19 +158,10 @@ void town(Builder& builder) {
     for (const double lane : {-235.0, -118.0, 112.0, 215.0, 310.0})
         builder.road({at(lane, 22.0), at(lane + 8.0, 160.0), at(0.9 * lane, 300.0), at(0.75 * lane, 400.0)}, 4.5,
                      kStreet);
-    harbour(builder);
-    bigHouses(builder);
-    const std::vector<Road> streets = builder.streets();
-    for (const Road& street : streets)
-        builder.housesAlong(street.line, street.width, {middle, 480.0, 0.62, kMostHouses});
-    std::vector<Place>& places = builder.map().places;
-    places.push_back({"Merinhaven", middle, 900.0, 0});
-    places.push_back({{"Saint Alba's church", "Sankt-Alba-Kirche"}, middle + 62.0 * plan.inland, 330.0, 3});
-    places.push_back({{"Lake Merin", "Merinsee"}, plan.lake + glm::dvec2(250.0, 150.0), 3600.0, 0});
 }
 
-/// A dozen farms around a chapel each, and the roads to them.
-void hamlets(Builder& builder) {
+/// From the town up the river, and around the lake.
+void countryRoads(Builder& builder) {
     const ValleyPlan& plan = builder.plan();
     const std::vector<Place> places = hamletsOf(plan);
     const auto beside = [&](double share, double off) {
@@ -189,22 +178,52 @@ void hamlets(Builder& builder) {
     road({places[0].at, beside(0.5, 80.0), beside(0.4, 70.0), beside(0.3, 75.0), places[2].at}, 6.0);
     road({beside(0.8, 75.0), beside(0.8, -75.0), ashore(0.9), ashore(1.3), ashore(1.7), ashore(2.1), places[3].at},
          7.0);
-    for (const Place& hamlet : places) {
-        const double turn = 2.0 * std::numbers::pi * builder.chance();
-        const glm::dvec2 along(std::cos(turn), std::sin(turn)), across(-along.y, along.x);
-        const std::vector<Road> before = builder.streets();
-        for (const glm::dvec2& way : {along, across})
-            road({hamlet.at - 115.0 * way, hamlet.at + 14.0 * glm::dvec2(-way.y, way.x), hamlet.at + 125.0 * way}, 4.0);
-        builder.church(hamlet.at + 24.0 * along + 24.0 * across, along, 11.0);
-        const Quarter quarter{hamlet.at, 170.0, 0.0, builder.map().buildings.size() + 26};
-        for (std::size_t k = before.size(); k < before.size() + 2; ++k) {
-            const Road street = builder.streets()[k];
-            builder.housesAlong(street.line, street.width, quarter);
-        }
-        for (const Road& street : before) builder.housesAlong(street.line, street.width, quarter);
-        builder.map().places.push_back(hamlet);
-    }
     builder.map().places.push_back({{"River Orra", "Fluss Orra"}, beside(0.62, 0.0), 1500.0, 2});
+}
+
+void townHouses(Builder& builder, const std::vector<Road>& streets) {
+    const ValleyPlan& plan = builder.plan();
+    for (const Road& street : streets)
+        builder.housesAlong(street.line, street.width, {plan.town, 480.0, 0.62, kMostHouses});
+    std::vector<Place>& places = builder.map().places;
+    places.push_back({"Merinhaven", plan.town, 900.0, 0});
+    places.push_back({{"Saint Alba's church", "Sankt-Alba-Kirche"}, plan.town + 62.0 * plan.inland, 330.0, 3});
+    places.push_back({{"Lake Merin", "Merinsee"}, plan.lake + glm::dvec2(250.0, 150.0), 3600.0, 0});
+}
+
+/// The first of the two lanes that cross in a hamlet.
+glm::dvec2 laneOf(const Builder& builder, int hamlet) {
+    const double turn = 2.0 * std::numbers::pi * chanceOf({hamlet, 6}, builder.seed() + 78);
+    return {std::cos(turn), std::sin(turn)};
+}
+
+void hamletLanes(Builder& builder) {
+    const std::vector<Place> places = hamletsOf(builder.plan());
+    for (std::size_t k = 0; k < places.size(); ++k) {
+        const glm::dvec2 along = laneOf(builder, static_cast<int>(k)), at = places[k].at;
+        for (const glm::dvec2& way : {along, glm::dvec2(-along.y, along.x)})
+            builder.road({at - 115.0 * way, at + 14.0 * glm::dvec2(-way.y, way.x), at + 125.0 * way}, 4.0,
+                         kCountryRoad);
+    }
+}
+
+/// Two dozen farms around a chapel each.
+void hamletHouses(Builder& builder) {
+    const std::vector<Place> places = hamletsOf(builder.plan());
+    const std::vector<Road> roads = builder.streets();
+    for (std::size_t k = 0; k < places.size(); ++k) {
+        const glm::dvec2 along = laneOf(builder, static_cast<int>(k)), across(-along.y, along.x);
+        for (const glm::dvec2& way : {along + across, along - across, -along + across, -along - across}) {
+            const glm::dvec2 at = places[k].at + 24.0 * way;
+            if (!builder.free(rectangle(at, along, 34.0, 18.0), 1.0)) continue;
+            builder.church(at, along, 11.0);
+            break;
+        }
+        const Quarter quarter{places[k].at, 170.0, 0.0, builder.map().buildings.size() + 26};
+        for (auto road = roads.rbegin(); road != roads.rend(); ++road) // the lanes first
+            builder.housesAlong(road->line, road->width, quarter);
+        builder.map().places.push_back(places[k]);
+    }
 }
 
 /// On a height over the lake.
@@ -262,8 +281,15 @@ std::vector<Place> hamletsOf(const ValleyPlan& plan) {
 
 void settle(Map& map, const ValleyPlan& plan, std::uint64_t seed) {
     Builder builder(map, plan, seed);
-    town(builder);
-    hamlets(builder);
+    square(builder);
+    townStreets(builder);
+    const std::vector<Road> streets = builder.streets();
+    countryRoads(builder);
+    hamletLanes(builder);
+    harbour(builder);
+    bigHouses(builder);
+    townHouses(builder, streets);
+    hamletHouses(builder);
     castle(builder);
     const std::vector<Road> roads = builder.streets();
     for (const Road& road : roads)

@@ -108,7 +108,7 @@ TEST(NavigationProgram, FliesOnlyWhileThePointerMovesOrIsHeld) {
     for (const bool held : {false, true}) {
         NavigationProgram program(1, valley());
         Visit visit(program);
-        visit.frame({{"wheel", 4.0}}); // there is room to pan
+        visit.frame({{"wheel", 8.0}}); // there is room to pan
         visit.frame({{"pointer.x", 0.5}, {"pointer.held", held ? 1.0 : 0.0}});
         visit.frames(1.5);
         const glm::dvec2 from = program.view().centre;
@@ -258,7 +258,7 @@ TEST(NavigationProgram, AllOfTheLandIsSeenFromFarAndASmallMapShowsWhereOneIs) {
         EXPECT_LT(point.y, 0.075);
     }
     EXPECT_FALSE(itemNamed(*visit.content().scene, "Inset"));
-    land(program, visit, "Castle Harrow");
+    land(program, visit, "River Orra");
     const Scene& scene = *visit.content().scene;
     const SceneItem* sheet = itemNamed(scene, "Inset");
     ASSERT_TRUE(sheet);
@@ -273,8 +273,8 @@ TEST(NavigationProgram, AllOfTheLandIsSeenFromFarAndASmallMapShowsWhereOneIs) {
     const auto& shape = visit.content().assets->models.at(std::get<MeshItem>(sheet->kind).model);
     const double side = 2.0 * static_cast<double>(shape->model.meshes[0].primitives[0].positions[2].x) * 0.92;
     const glm::dvec3 off = (middle - glm::dvec3(sheet->position)) / static_cast<double>(sheet->scale.x);
-    EXPECT_NEAR(off.x / side + 0.5, placeNamed("Castle Harrow").at.x / 8192.0, 0.01);
-    EXPECT_NEAR(off.z / side + 0.5, placeNamed("Castle Harrow").at.y / 8192.0, 0.01);
+    EXPECT_NEAR(off.x / side + 0.5, placeNamed("River Orra").at.x / 8192.0, 0.01);
+    EXPECT_NEAR(off.z / side + 0.5, placeNamed("River Orra").at.y / 8192.0, 0.01);
     EXPECT_NEAR(around, 2.0 * (1.0 + 15.0 / 21.0) * program.view().width / 8192.0 * side, 1e-3);
 }
 
@@ -400,7 +400,7 @@ std::size_t trianglesOf(const ShowContent& content, int material) {
 TEST(NavigationProgram, RainWetsTheGroundSplashesAndLetsTheRiverRise) {
     constexpr int kWaterMaterial = 2;
     NavigationProgram program(3, valley());
-    Visit visit(program);
+    Visit visit(program, kLongFrame);
     land(program, visit, "River Orra");
     const std::size_t before = trianglesOf(visit.content(), kWaterMaterial);
     const glm::dvec2 under = program.view().placeAt({0.03, -0.02}), elsewhere = program.view().placeAt({-0.09, 0.06});
@@ -416,7 +416,7 @@ TEST(NavigationProgram, RainWetsTheGroundSplashesAndLetsTheRiverRise) {
     visit.see({});
     visit.frames(32.0);
     EXPECT_EQ(program.rain().wetnessAt(under), 0.0F);
-    EXPECT_EQ(trianglesOf(visit.content(), kWaterMaterial), before);
+    EXPECT_EQ(program.rain().swell(), 0.0);
 }
 
 TEST(NavigationProgram, TheFarEdgeBendsForWhoLooksWhereHeWants) {

@@ -38,7 +38,8 @@ TEST(BundledValley, HasATownOfHousesOnDryGround) {
         ASSERT_GE(doubleArea(building.outline), 0.0);
         if (building.grounded && glm::distance(building.outline.front(), square) < 700.0) ++houses;
         if (!building.grounded) continue;
-        for (const glm::dvec2& corner : building.outline) ASSERT_FALSE(map.isWater(map.sampleAt(corner)));
+        for (const glm::dvec2& corner : building.outline)
+            ASSERT_FALSE(map.isWater(map.sampleAt(corner))) << glm::distance(corner, square) << " m from the square";
     }
     EXPECT_GE(houses, 100U);
     EXPECT_LE(houses, 850U);
