@@ -165,6 +165,22 @@ TEST(NavigationProgram, NextRestartAndGoToFlyThere) {
     EXPECT_TRUE(program.playsItself());
 }
 
+// A picture of its own, at most twice as wide as the view, and not that of all the land.
+TEST(NavigationProgram, WhoArrivesSeesTheGroundSharply) {
+    NavigationProgram program(1, valley());
+    Visit first(program, kLongFrame);
+    land(program, first, "Merinhaven");
+    Visit visit(program);
+    program.flyTo("Saint Alba's church"); // the shortest way
+    visit.frame();
+    while (program.flies()) visit.frame();
+    for (const auto& primitive : visit.content().assets->models.at("navigation land")->model.meshes[0].primitives) {
+        if (primitive.material != 0) continue;
+        const glm::vec2 west = primitive.texcoords.front(), east = primitive.texcoords[105];
+        EXPECT_GT(glm::distance(west, east), 0.45F);
+    }
+}
+
 TEST(NavigationProgram, TheSameInputsGiveTheSameShow) {
     const auto play = [] {
         NavigationProgram program(7, valley());
