@@ -34,7 +34,7 @@ class GroundPicture {
 public:
     static constexpr int kSide = 1024; ///< pixels
     static constexpr int kCoarse = 129;
-    static constexpr int kFramePixels = 16 * kSide; ///< to paint in a frame
+    static constexpr int kFramePixels = 20 * kSide; ///< to paint in a frame
 
     GroundPicture(const Map& map, const PictureWindow& window);
 

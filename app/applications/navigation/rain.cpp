@@ -22,6 +22,7 @@ constexpr double kFall = 0.42;               ///< seconds in the air
 constexpr double kPatience = 1.5;            ///< seconds in a hollow
 constexpr double kRunsOff = 3.2;             ///< seconds in which depth falls by e
 constexpr float kDry = 0.06F;                ///< depth
+constexpr double kDeepest = 60.0;            ///< depth that is drawn brightest: only where water gathers
 constexpr double kStreamCell = 0.0011;       ///< device metres
 constexpr double kOver = 0.00035;            ///< of light over the ground, metres
 constexpr double kSplash = 0.55;             ///< seconds until a ring has gone
@@ -285,7 +286,7 @@ SceneModel Rain::model(const Map& map, const ViewGround& ground, double cloudHei
         addQuad(primitive,
                 {at(from - side - ahead, low), at(from + side - ahead, low), at(to + side + ahead, high),
                  at(to - side + ahead, high)},
-                static_cast<float>(std::clamp(0.19 * std::log1p(depth), 0.03, 0.95)));
+                static_cast<float>(std::clamp(std::pow(depth / kDeepest, 0.65), 0.03, 0.95)));
     }
     for (const Splash& splash : splashes_) {
         const glm::dvec2 point = ground.view().pointAt(splash.at);
@@ -321,7 +322,7 @@ std::shared_ptr<const Image> rainImage() {
     for (int x = 0; x < kPicture.x; ++x) {
         const float share = static_cast<float>(x) / static_cast<float>(kPicture.x - 1);
         for (int y = 0; y < kBand; ++y) {
-            put(x, y, glm::mix(shallow, deep, share), glm::mix(0.16F, 0.95F, share));
+            put(x, y, glm::mix(shallow, deep, share), glm::mix(0.03F, 0.95F, share));
             put(x, y + kBand, wet, 0.72F * share);
         }
     }
