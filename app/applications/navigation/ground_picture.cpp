@@ -20,6 +20,11 @@ constexpr double kSideStep = 0.5;  ///< of sides, powers of two
 constexpr double kFurrow = 4.5;    ///< metres
 constexpr double kThinnest = 0.75; ///< pixels, half the width of a road from afar
 constexpr double kGrain = 0.035;
+constexpr glm::vec3 kBoard{0.80F, 0.76F, 0.67F}; ///< on which the map lies
+constexpr double kFeetTo = 2.2;                  ///< metres a pixel up to which walls darken the ground at their foot
+constexpr double kFootReach = 3.4;               ///< metres
+constexpr double kFootShade = 0.5;
+constexpr glm::vec3 kFoot{0.16F, 0.15F, 0.14F}, kHedge{0.22F, 0.34F, 0.17F};
 
 void lay(Image::Pixel& pixel, const glm::vec3& color, float share) {
     for (int c = 0; c < 3; ++c) {
@@ -31,6 +36,16 @@ void lay(Image::Pixel& pixel, const glm::vec3& color, float share) {
 
 std::uint8_t byteOf(double share) {
     return static_cast<std::uint8_t>(std::lround(255.0 * std::clamp(share, 0.0, 1.0)));
+}
+
+/// How far a place lies outside a convex outline; negative in it.
+double outsideOf(const std::vector<glm::dvec2>& corners, const glm::dvec2& at) {
+    double outside = -1e9;
+    for (std::size_t k = 0; k < corners.size(); ++k) {
+        const glm::dvec2 side = corners[(k + 1) % corners.size()] - corners[k];
+        outside = std::max(outside, glm::dot(at - corners[k], glm::normalize(glm::dvec2(side.y, -side.x))));
+    }
+    return outside;
 }
 
 struct PixelBox {
@@ -66,7 +81,8 @@ PictureWindow windowFor(const MapView& view) noexcept {
 
 PictureWindow wholeWindow(const Map& map) noexcept {
     const glm::dvec2 size = map.heights.size();
-    return {glm::dvec2(0.0), std::max(size.x, size.y)};
+    const double side = wholeView(size);
+    return {0.5 * (size - side), side};
 }
 
 GroundPicture::GroundPicture(const Map& map, const PictureWindow& window)
@@ -102,11 +118,13 @@ void GroundPicture::measureRow(int row, std::vector<float>& over) const {
         const float coarse =
             std::lerp(std::lerp(north[i], north[i + 1], tu), std::lerp(south[i], south[i + 1], tu), tv);
         const glm::dvec2 place(window_.corner.x + (x + 0.5) * metresAPixel(), y);
-        over[static_cast<std::size_t>(x)] = static_cast<float>(map_->heights.at(place, metresAPixel())) - coarse;
+        over[static_cast<std::size_t>(x)] =
+            map_->holds(place) ? static_cast<float>(map_->heights.at(place, metresAPixel())) - coarse : 0.0F;
     }
 }
 
 glm::vec3 GroundPicture::coverAt(const glm::dvec2& place) const noexcept {
+    if (!map_->holds(place)) return kBoard;
     const glm::ivec2 samples = map_->heights.samples();
     const glm::dvec2 cell = glm::clamp(place / map_->heights.spacing(), glm::dvec2(0.0), glm::dvec2(samples - 1));
     const glm::ivec2 at = glm::min(glm::ivec2(cell), samples - 2);
@@ -145,20 +163,41 @@ int GroundPicture::paintParcel(const Parcel& parcel) {
     const PixelBox box = boxAround(min, max, 1.0);
     if (box.empty()) return 1;
     const glm::dvec2 along = glm::normalize(corners[1] - corners[0]);
+    const double hedge = parcel.hedge / metresAPixel();
     const double fine = parcel.furrows * (1.0 - smoothStep(0.15, 0.4, metresAPixel() / kFurrow));
     for (int y = box.from.y; y <= box.to.y; ++y)
         for (int x = box.from.x; x <= box.to.x; ++x) {
             const glm::dvec2 at(x, y);
-            double outside = -1e9;
-            for (std::size_t k = 0; k < corners.size(); ++k) {
-                const glm::dvec2 side = corners[(k + 1) % corners.size()] - corners[k];
-                outside = std::max(outside, glm::dot(at - corners[k], glm::normalize(glm::dvec2(side.y, -side.x))));
-            }
+            const double outside = outsideOf(corners, at);
             if (outside >= 0.5) continue;
             const double across = metresAPixel() * glm::dot(at - corners[0], glm::dvec2(-along.y, along.x));
             const double stripe = 1.0 + 0.25 * fine * std::sin(2.0 * std::numbers::pi * across / kFurrow);
             lay(color_->at(x, y), glm::clamp(parcel.color * static_cast<float>(stripe), 0.0F, 1.0F),
                 static_cast<float>(0.8 * std::clamp(0.5 - outside, 0.0, 1.0)));
+            if (hedge <= 0.0 || outside < -hedge - 0.5) continue;
+            const double grown = std::clamp(hedge + 0.5 + outside, 0.0, 1.0) * std::clamp(0.5 - outside, 0.0, 1.0);
+            lay(color_->at(x, y), kHedge, static_cast<float>(0.75 * grown * std::min(1.0, hedge)));
+        }
+    return box.pixels();
+}
+
+/// Next to a wall the ground sees less of the sky: the soft shadow at its foot.
+int GroundPicture::paintFoot(const Building& building) {
+    if (!building.grounded || metresAPixel() > kFeetTo) return 1;
+    const double reach = kFootReach / metresAPixel();
+    std::vector<glm::dvec2> corners;
+    glm::dvec2 min(std::numeric_limits<double>::infinity()), max = -min;
+    for (const glm::dvec2& corner : building.outline) {
+        corners.push_back(pixelOf(corner));
+        min = glm::min(min, corners.back());
+        max = glm::max(max, corners.back());
+    }
+    const PixelBox box = boxAround(min, max, reach);
+    if (box.empty()) return 1;
+    for (int y = box.from.y; y <= box.to.y; ++y)
+        for (int x = box.from.x; x <= box.to.x; ++x) {
+            const double open = smoothStep(-0.3 * reach, reach, outsideOf(corners, {x, y}));
+            if (open < 1.0) lay(color_->at(x, y), kFoot, static_cast<float>(kFootShade * (1.0 - open)));
         }
     return box.pixels();
 }
@@ -191,6 +230,8 @@ bool GroundPicture::paint(int pixels) {
                 ++road_;
                 piece_ = 0;
             }
+        } else if (foot_ < map_->buildings.size()) {
+            pixels -= paintFoot(map_->buildings[foot_++]) / 2 + 4;
         } else {
             done_ = true;
         }

@@ -34,7 +34,7 @@ class GroundPicture {
 public:
     static constexpr int kSide = 1024; ///< pixels
     static constexpr int kCoarse = 129;
-    static constexpr int kFramePixels = 16 * kSide; ///< to paint in a frame
+    static constexpr int kFramePixels = 20 * kSide; ///< to paint in a frame
 
     GroundPicture(const Map& map, const PictureWindow& window);
 
@@ -52,6 +52,7 @@ private:
     void paintRow(int row);
     [[nodiscard]] glm::vec3 coverAt(const glm::dvec2& place) const noexcept;
     int paintParcel(const Parcel& parcel);
+    int paintFoot(const Building& building);
     int paintRoad(const Road& road, std::size_t piece);
     [[nodiscard]] double metresAPixel() const noexcept { return window_.side / kSide; }
     [[nodiscard]] glm::dvec2 pixelOf(const glm::dvec2& place) const noexcept {
@@ -64,7 +65,7 @@ private:
     std::vector<float> coarse_;              ///< heights as the drawn surface has them, kCoarse a side
     std::vector<float> before_, at_, after_; ///< of the rows around `row_`
     int row_ = 0;
-    std::size_t parcel_ = 0, road_ = 0, piece_ = 0;
+    std::size_t parcel_ = 0, road_ = 0, piece_ = 0, foot_ = 0;
     bool done_ = false;
 };
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <memory>
 #include <numeric>
 
@@ -22,8 +23,11 @@ constexpr int kPlateSteps = 4;                                                  
 constexpr double kFades = 0.22;                                                   ///< seconds
 constexpr double kBefore = 0.055;                                                 ///< metres before all that stands
 constexpr double kPoleWidth = 0.0005;                                             ///< metres
-constexpr double kNamedTo = 9.0;  ///< times its own width a view may be and still name a place
-constexpr double kInside = 0.003; ///< metres from the rim within which a place has a name
+constexpr double kNamedTo = 9.0;        ///< times its own width a view may be and still name a place
+constexpr double kInside = 0.003;       ///< metres from the rim within which a place has a name
+constexpr double kInsideTop = 0.002;    ///< metres from the rim to which a plate may reach
+constexpr double kFarthestShift = 0.62; ///< of a plate's width
+constexpr double kLower = 0.006;        ///< metres by which the device may lie lower than the land on it
 
 /// Dark letters on a light plate with round ends.
 std::shared_ptr<const Image> written(const Font& font, const std::string& name) {
@@ -117,20 +121,45 @@ void Labels::addTo(SceneAssets& assets) const {
         }
 }
 
-/// The least lift by which a plate hides none of those before it from the eye; negative where there is none.
-double Labels::findRoom(const Plate& plate, const std::vector<const Plate*>& before, const glm::dvec3& eye) const {
+std::optional<glm::dvec2> shiftToTop(const glm::dvec3& middle, double width, const glm::dvec3& eye,
+                                     double top) noexcept {
+    const double enlarged = (eye.y - top) / std::max(eye.y - middle.y, 1e-9); // of the plate, seen down there
+    if (eye.y <= middle.y || middle.y < top) return glm::dvec2(0.0);
+    const glm::dmat3 axes = glm::mat3_cast(facing(middle, eye));
+    glm::dvec2 least(std::numeric_limits<double>::infinity()), most = -least;
+    for (const glm::dvec2& way : {glm::dvec2(-1, -1), {1, -1}, {1, 1}, {-1, 1}}) {
+        const glm::dvec3 corner = middle + 0.5 * width * way.x * axes[0] + 0.5 * Labels::kPlateHeight * way.y * axes[1];
+        const glm::dvec3 seen = eye + (eye.y - top) / std::max(eye.y - corner.y, 1e-9) * (corner - eye);
+        least = glm::min(least, glm::dvec2(seen.x, seen.z));
+        most = glm::max(most, glm::dvec2(seen.x, seen.z));
+    }
+    const glm::dvec2 limit = kHalf - kInsideTop;
+    const glm::dvec2 shift = (glm::max(-limit - least, 0.0) - glm::max(most - limit, 0.0)) / enlarged;
+    if (glm::length(shift) > kFarthestShift * width) return std::nullopt;
+    return shift;
+}
+
+/// The least lift by which a plate hides none of those before it from the eye; nothing where there is none.
+std::optional<Labels::Room> Labels::findRoom(const Plate& plate, const std::vector<const Plate*>& before,
+                                             const glm::dvec3& eye) const {
     const glm::dmat3 axes = glm::mat3_cast(facing(plate.foot, eye));
+    const auto middleOf = [](const glm::dvec3& foot, double lift, const glm::dvec2& shift) {
+        return foot + glm::dvec3(shift.x, kShortestPole + lift, shift.y);
+    };
     for (int step = 0; step < kPlateSteps; ++step) {
         const double lift = step * kPlateStep;
-        const glm::dvec3 middle = plate.foot + glm::dvec3(0.0, kShortestPole + lift, 0.0);
+        const auto shift =
+            shiftToTop(middleOf(plate.foot, lift, {}), plate.writing().width, eye, plate.foot.y - kLower);
+        if (!shift) continue;
+        const glm::dvec3 middle = middleOf(plate.foot, lift, *shift);
         const bool free = std::ranges::none_of(before, [&](const Plate* other) {
-            const glm::dvec3 off = other->foot + glm::dvec3(0.0, kShortestPole + other->lift, 0.0) - middle;
+            const glm::dvec3 off = middleOf(other->foot, other->lift, other->shift) - middle;
             return std::abs(glm::dot(off, axes[0])) < 0.52 * (plate.writing().width + other->writing().width) &&
                    std::abs(glm::dot(off, axes[1])) < 1.05 * kPlateHeight;
         });
-        if (free) return lift;
+        if (free) return Room{lift, *shift};
     }
-    return -1.0;
+    return std::nullopt;
 }
 
 void Labels::arrange(const Map& map, const ViewGround& ground, const glm::dvec3& eye, Language language,
@@ -146,17 +175,19 @@ void Labels::arrange(const Map& map, const ViewGround& ground, const glm::dvec3&
         if (over) plate.foot = {point.x, ground.surfaceAt(point), point.y};
         plate.wanted = over && shown.size() < kMostShown;
         if (plate.wanted) {
-            const double lift = findRoom(plate, shown, eye);
-            plate.wanted = lift >= 0.0;
-            if (plate.wanted) {
-                plate.lift = plate.opacity > 0.0 ? std::lerp(lift, plate.lift, std::exp(-seconds / kFades)) : lift;
+            const std::optional<Room> room = findRoom(plate, shown, eye);
+            plate.wanted = room.has_value();
+            if (room) {
+                const double stays = plate.opacity > 0.0 ? std::exp(-seconds / kFades) : 0.0;
+                plate.lift = std::lerp(room->lift, plate.lift, stays);
+                plate.shift = glm::mix(room->shift, plate.shift, stays);
                 shown.push_back(&plate);
             }
         }
         const double goal = plate.wanted ? 1.0 : 0.0;
         plate.opacity = std::lerp(goal, plate.opacity, std::exp(-seconds / kFades));
         if (std::abs(plate.opacity - goal) < 0.02) plate.opacity = goal;
-        plate.middle = plate.foot + glm::dvec3(0.0, kShortestPole + plate.lift, 0.0);
+        plate.middle = plate.foot + glm::dvec3(plate.shift.x, kShortestPole + plate.lift, plate.shift.y);
         plate.rotation = glm::quat(facing(plate.middle, eye));
         const double far = glm::distance(eye, plate.middle);
         const double share = std::min(kBefore / std::max(far, 1e-9), 0.5);

@@ -3,10 +3,12 @@
 #include <array>
 #include <cstddef>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include <glm/gtc/quaternion.hpp>
+#include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 
 #include "app/applications/navigation/map.h"
@@ -60,14 +62,24 @@ private:
         double size = 1.0;      ///< by which it is as large for the eye there
         glm::quat rotation{1.0F, 0.0F, 0.0F, 0.0F};
         double opacity = 0.0, lift = 0.0; ///< metres over its pole's shortest
+        glm::dvec2 shift{0.0};            ///< in x and z, so that none of it reaches over the device's rim
         bool wanted = false;
     };
     [[nodiscard]] static Writing write(const Font& font, const std::string& text, const std::string& model);
-    [[nodiscard]] double findRoom(const Plate& plate, const std::vector<const Plate*>& before,
-                                  const glm::dvec3& eye) const;
+    struct Room {
+        double lift = 0.0;
+        glm::dvec2 shift{0.0};
+    };
+    [[nodiscard]] std::optional<Room> findRoom(const Plate& plate, const std::vector<const Plate*>& before,
+                                               const glm::dvec3& eye) const;
 
     std::vector<Plate> plates_; ///< the least rank first
 };
+
+/// By how much a plate must be moved in x and z so that the eye sees all of it before the device's top, at a height of
+/// the top; nothing where it would be too far from its place.
+[[nodiscard]] std::optional<glm::dvec2> shiftToTop(const glm::dvec3& middle, double width, const glm::dvec3& eye,
+                                                   double top) noexcept;
 
 /// The rotation of a plate whose picture faces +z with its text along +x, so that an eye reads it upright.
 [[nodiscard]] glm::dquat facing(const glm::dvec3& from, const glm::dvec3& eye) noexcept;

@@ -43,21 +43,28 @@ enum class Paint : std::uint8_t {
     clay,
     rock,
     sail,
-    grey
+    grey,
+    straw,
+    dove,
+    sage
 };
-inline constexpr int kPaints = static_cast<int>(Paint::grey) + 1;
+inline constexpr int kPaints = static_cast<int>(Paint::sage) + 1;
+
+inline constexpr int kShades = 16; ///< of each paint: no two roofs are quite alike
 
 /// A solid with upright walls on the ground: a house, a tower, a bridge.
 struct Building {
-    enum class Roof : std::uint8_t { flat, gable, pyramid };
+    enum class Roof : std::uint8_t { flat, gable, pyramid, hip };
     std::vector<glm::dvec2> outline; ///< convex, clockwise seen from above (x to the east, y to the south), metres
     double base = 0.0;               ///< heights over the sea, metres: from here
     double eaves = 6.0;              ///< to the roof
     double ridge = 9.0;              ///< and to its top; of a flat roof: as eaves
-    Roof roof = Roof::flat;          ///< a gable's ridge runs along the outline's first side of four
+    Roof roof = Roof::flat;          ///< the ridge of a gable or hip runs along the outline's first side of four
     Paint walls = Paint::cream, top = Paint::tile;
-    bool landmark = false; ///< never left out from afar
-    bool grounded = true;  ///< stands on the ground as it is drawn; false: at its height, on water or in the air
+    std::uint8_t shade = 0; ///< which shade of its paints, of kShades
+    bool windows = false;   ///< in its walls, storey over storey
+    bool landmark = false;  ///< never left out from afar
+    bool grounded = true;   ///< stands on the ground as it is drawn; false: at its height, on water or in the air
 };
 
 struct Road {
@@ -71,6 +78,13 @@ struct Parcel {
     std::vector<glm::dvec2> outline; ///< convex, clockwise seen from above, metres
     glm::vec3 color{0.6F};           ///< sRGB
     float furrows = 0.0F;            ///< how strongly it is striped along its first side, 0 to 1
+    double hedge = 0.0;              ///< width of the hedge along its rim, metres
+};
+
+/// A tree that stands by itself, in a garden or beside a road.
+struct Tree {
+    glm::dvec2 at{0.0};  ///< metres
+    double height = 9.0; ///< metres
 };
 
 /// A map of some land, as a plain value. Places as of HeightMap.
@@ -83,12 +97,15 @@ struct Map {
     std::vector<Parcel> parcels;
     std::vector<Road> roads;
     std::vector<Building> buildings;
+    std::vector<Tree> trees; ///< beside those of the woods
     std::vector<Place> places;
 
     [[nodiscard]] std::size_t index(glm::ivec2 sample) const noexcept {
         return static_cast<std::size_t>(sample.y) * static_cast<std::size_t>(heights.samples().x) +
                static_cast<std::size_t>(sample.x);
     }
+    /// Whether a place is on it; beyond it there is the bare board on which it lies.
+    [[nodiscard]] bool holds(const glm::dvec2& place) const noexcept;
     /// The sample nearest to a place.
     [[nodiscard]] glm::ivec2 sampleAt(const glm::dvec2& place) const noexcept;
     [[nodiscard]] bool isWater(glm::ivec2 sample) const noexcept;

@@ -20,7 +20,10 @@ using Primitive = Model::Primitive;
 enum LandMaterial : int { kGround, kThings, kWater };
 
 constexpr int kCells = 8; ///< of the palette a side
-constexpr int kCellPixels = 8;
+constexpr int kCellPixels = 64;
+constexpr int kShadesRow = 4; ///< of a cell, and in so many rows
+constexpr int kFacades = 32;  ///< cells from here on: the paints once more, with windows
+static_assert(kPaints <= kFacades && kShadesRow * kShadesRow == kShades);
 constexpr double kTreeCells = 52.0;                           ///< of trees along the device, when they stand closest
 constexpr double kTreeHeight = 0.0034, kTreeRadius = 0.00115; ///< device metres
 constexpr double kSymbolsFrom = 1700.0; ///< width of a view from which on houses are drawn larger than they are, metres
@@ -32,7 +35,9 @@ std::uint32_t cornerOf(int column, int row) { return static_cast<std::uint32_t>(
 
 glm::vec3 onDevice(const glm::dvec2& point, double y) { return {glm::dvec3(point.x, y, point.y)}; }
 
-void addFace(Primitive& primitive, std::span<const glm::vec3> corners, Paint paint) {
+/// `placeOf` says where on the palette a corner is.
+template <typename PlaceOf>
+void addPolygon(Primitive& primitive, std::span<const glm::vec3> corners, const PlaceOf& placeOf) {
     const glm::vec3 normal = glm::cross(corners[1] - corners[0], corners[2] - corners[0]);
     const float length = glm::length(normal);
     if (!(length > 1e-14F)) return;
@@ -40,10 +45,33 @@ void addFace(Primitive& primitive, std::span<const glm::vec3> corners, Paint pai
     for (const glm::vec3& corner : corners) {
         primitive.positions.push_back(corner);
         primitive.normals.push_back(normal / length);
-        primitive.texcoords.push_back(paintPlace(paint));
+        primitive.texcoords.push_back(placeOf(corner));
     }
     for (std::uint32_t k = 2; k < corners.size(); ++k)
         primitive.triangles.emplace_back(first, first + k - 1, first + k);
+}
+
+void addFace(Primitive& primitive, std::span<const glm::vec3> corners, Paint paint) {
+    const glm::vec2 place = paintPlace(paint);
+    addPolygon(primitive, corners, [&](const glm::vec3&) { return place; });
+}
+
+/// Its corner of the palette, v upwards; bays and storeys are counted from there.
+glm::vec2 facadePlace(Paint paint, float bays, float storeys) {
+    constexpr float kRim = 0.5F / kCellPixels; // so that no other cell shines in
+    const int k = kFacades + static_cast<int>(paint);
+    const glm::vec2 share(bays / kBays, 1.0F - storeys / kStoreys);
+    return (glm::vec2(k % kCells, k / kCells) + glm::clamp(share, kRim, 1.0F - kRim)) / static_cast<float>(kCells);
+}
+
+void addFace(Primitive& primitive, const Face& face) {
+    if (const auto& windows = face.windows)
+        return addPolygon(primitive, face.corners, [&](const glm::vec3& corner) {
+            const glm::vec3 off = corner - windows->foot;
+            return facadePlace(face.paint, glm::dot(off, windows->bays), glm::dot(off, windows->storeys));
+        });
+    const glm::vec2 place = paintPlace(face.paint, face.shade);
+    addPolygon(primitive, face.corners, [&](const glm::vec3&) { return place; });
 }
 
 /// The drawn surface: one square of two triangles between neighbouring samples.
@@ -78,14 +106,14 @@ Primitive groundOf(const ViewGround& ground, const PictureWindow& window) {
 }
 
 /// Lifted surface of the water at every sample; NaN where none is near.
-std::vector<float> waterOf(const Map& map, const ViewGround& ground) {
+std::vector<float> waterOf(const Map& map, const ViewGround& ground, double swell) {
     std::vector<float> water;
     if (map.water.empty()) return water;
     water.reserve(static_cast<std::size_t>(kColumns) * kRows);
     for (int j = 0; j < kRows; ++j)
         for (int i = 0; i < kColumns; ++i) {
             const double level = map.waterAt(ground.view().placeAt(ViewGround::pointAt(i, j)));
-            water.push_back(static_cast<float>(ground.lift(level)));
+            water.push_back(static_cast<float>(ground.lift(level + swell)));
         }
     return water;
 }
@@ -200,8 +228,13 @@ void addBuildings(const Map& map, const ViewGround& ground, Primitive& primitive
         if (std::max(off.x, off.y) > reach) continue;
         const double size = building.grounded ? sizeOf(building, k, symbol) : 1.0;
         if (size < 0.05) continue;
-        for (const Face& face : cutAtRim(solidOf(building, ground, size))) addFace(primitive, face.corners, face.paint);
+        for (const Face& face : cutAtRim(solidOf(building, ground, size))) addFace(primitive, face);
     }
+}
+
+glm::vec2 leavesPlace(bool fir, double shade) {
+    const Paint paint = fir ? (shade < 0.5 ? Paint::fir : Paint::spruce) : (shade < 0.5 ? Paint::leaf : Paint::moss);
+    return paintPlace(paint, static_cast<int>(997.0 * shade));
 }
 
 /// A cone for a fir, a lump for a tree with leaves; light as if they were round.
@@ -210,11 +243,11 @@ void addTree(Primitive& primitive, const glm::vec3& foot, float size, bool fir, 
     const auto first = static_cast<std::uint32_t>(primitive.positions.size());
     const float height = size * static_cast<float>(fir ? kTreeHeight : 0.8 * kTreeHeight);
     const float radius = size * static_cast<float>(fir ? kTreeRadius : 1.25 * kTreeRadius);
-    const Paint paint = fir ? (shade < 0.5 ? Paint::fir : Paint::spruce) : (shade < 0.5 ? Paint::leaf : Paint::moss);
+    const glm::vec2 leaves = leavesPlace(fir, shade);
     const auto add = [&](const glm::vec3& at, const glm::vec3& normal) {
         primitive.positions.push_back(foot + at);
         primitive.normals.push_back(glm::normalize(normal));
-        primitive.texcoords.push_back(paintPlace(paint));
+        primitive.texcoords.push_back(leaves);
     };
     add({0.0F, height, 0.0F}, {0.0F, 1.0F, 0.0F});
     constexpr std::array<glm::vec2, kSides> kRound{
@@ -269,6 +302,42 @@ void addTrees(const Map& map, const ViewGround& ground, Primitive& primitive) {
     }
 }
 
+/// A paint in its shades: each a little lighter or darker, warmer or colder.
+glm::vec3 shaded(const glm::vec3& color, int x, int y) {
+    constexpr int kPatch = kCellPixels / kShadesRow;
+    const glm::ivec2 shade(x / kPatch, y / kPatch);
+    const auto light = static_cast<float>(0.24 * (chanceOf(shade, 61) - 0.5));
+    const auto warm = static_cast<float>(0.10 * (chanceOf(shade, 62) - 0.5));
+    return color * (1.0F + light) * glm::vec3(1.0F + warm, 1.0F, 1.0F - warm);
+}
+
+/// Rows of dark windows in a wall that dirt and the shadow of the ground darken at its foot.
+glm::vec3 facade(const glm::vec3& color, int x, int y) {
+    constexpr int kBayPixels = kCellPixels / kBays, kStoreyPixels = kCellPixels / kStoreys;
+    const int up = kCellPixels - 1 - y, storey = up / kStoreyPixels;
+    const int across = x % kBayPixels, over = up % kStoreyPixels;
+    const auto foot = static_cast<float>(smoothStep(-0.5 * kStoreyPixels, 0.8 * kStoreyPixels, up));
+    const glm::vec3 wall = color * (0.55F + 0.45F * foot);
+    if (storey + 1 >= kStoreys || over < 4 || over > 12 || across < 2 || across > 5) return wall;
+    return {0.27F, 0.28F, 0.31F};
+}
+
+/// Those of gardens and avenues are as large as they are, and left out where they would be specks.
+void addSolitaryTrees(const Map& map, const ViewGround& ground, Primitive& primitive) {
+    constexpr double kRim = 0.0008, kSmallestTree = 0.16, kLargestTree = 1.1; // the latter of a tree of the woods
+    const MapView& view = ground.view();
+    for (std::size_t k = 0; k < map.trees.size(); ++k) {
+        const Tree& tree = map.trees[k];
+        const glm::dvec2 point = view.pointAt(tree.at);
+        const glm::dvec2 inside = kHalf - glm::abs(point);
+        if (std::min(inside.x, inside.y) < kRim) continue;
+        const double size = std::min(kLargestTree, tree.height / view.scale() / kTreeHeight);
+        if (size < kSmallestTree) continue;
+        addTree(primitive, onDevice(point, ground.surfaceAt(point) - 0.0002), static_cast<float>(size), false,
+                chanceOf({static_cast<int>(k), 5}, 17));
+    }
+}
+
 Material thingsMaterial() {
     Material material;
     material.name = "Things";
@@ -294,7 +363,7 @@ Material groundMaterial(double exaggeration) {
 
 Material waterMaterial() {
     Material material = readyMaterial("Water");
-    material.color = {0.10F, 0.42F, 0.56F};
+    material.color = {0.10F, 0.36F, 0.46F};
     material.refraction = 0.0F;
     material.reflection = 0.22F;
     material.normalStrength = 0.18F;
@@ -308,11 +377,12 @@ Material waterMaterial() {
 glm::vec3 colorOf(Paint paint) noexcept {
     constexpr std::array<glm::vec3, kPaints> kColors{
         {{0.97F, 0.96F, 0.93F}, {0.95F, 0.89F, 0.76F}, {0.88F, 0.79F, 0.62F}, {0.93F, 0.75F, 0.66F},
-         {0.58F, 0.40F, 0.26F}, {0.66F, 0.64F, 0.60F}, {0.86F, 0.40F, 0.24F}, {0.76F, 0.28F, 0.20F},
-         {0.62F, 0.30F, 0.20F}, {0.40F, 0.44F, 0.50F}, {0.88F, 0.62F, 0.30F}, {0.36F, 0.66F, 0.58F},
+         {0.58F, 0.40F, 0.26F}, {0.66F, 0.64F, 0.60F}, {0.66F, 0.37F, 0.26F}, {0.56F, 0.29F, 0.22F},
+         {0.53F, 0.32F, 0.24F}, {0.38F, 0.41F, 0.46F}, {0.88F, 0.62F, 0.30F}, {0.38F, 0.57F, 0.50F},
          {0.38F, 0.56F, 0.24F}, {0.50F, 0.62F, 0.26F}, {0.16F, 0.36F, 0.22F}, {0.22F, 0.42F, 0.24F},
          {0.08F, 0.32F, 0.46F}, {0.30F, 0.22F, 0.15F}, {0.66F, 0.48F, 0.32F}, {0.80F, 0.72F, 0.60F},
-         {1.0F, 0.99F, 0.95F},  {0.60F, 0.60F, 0.60F}}};
+         {1.0F, 0.99F, 0.95F},  {0.60F, 0.60F, 0.60F}, {0.86F, 0.77F, 0.57F}, {0.80F, 0.79F, 0.76F},
+         {0.76F, 0.77F, 0.67F}}};
     return kColors[static_cast<std::size_t>(paint)];
 }
 
@@ -321,28 +391,39 @@ glm::vec2 paintPlace(Paint paint) noexcept {
     return (glm::vec2(k % kCells, k / kCells) + 0.5F) / static_cast<float>(kCells);
 }
 
+glm::vec2 paintPlace(Paint paint, int shade) noexcept {
+    const int k = static_cast<int>(paint), s = shade % kShades;
+    const glm::vec2 inCell = (glm::vec2(s % kShadesRow, s / kShadesRow) + 0.5F) / static_cast<float>(kShadesRow);
+    return (glm::vec2(k % kCells, k / kCells) + inCell) / static_cast<float>(kCells);
+}
+
 std::shared_ptr<const Image> paletteImage() {
     auto image = std::make_shared<Image>(glm::ivec2(kCells * kCellPixels));
-    for (int k = 0; k < kPaints; ++k) {
-        const glm::ivec3 color(255.0F * colorOf(static_cast<Paint>(k)) + 0.5F);
-        for (int y = 0; y < kCellPixels; ++y)
-            for (int x = 0; x < kCellPixels; ++x)
-                image->at(k % kCells * kCellPixels + x, k / kCells * kCellPixels + y) = {
-                    static_cast<std::uint8_t>(color.r), static_cast<std::uint8_t>(color.g),
-                    static_cast<std::uint8_t>(color.b), 255};
-    }
+    for (int k = 0; k < kPaints; ++k)
+        for (const int cell : {k, kFacades + k})
+            for (int y = 0; y < kCellPixels; ++y)
+                for (int x = 0; x < kCellPixels; ++x) {
+                    const glm::vec3 color = colorOf(static_cast<Paint>(k));
+                    const glm::ivec3 shown(
+                        255.0F * glm::clamp(cell < kFacades ? shaded(color, x, y) : facade(color, x, y), 0.0F, 1.0F) +
+                        0.5F);
+                    image->at(cell % kCells * kCellPixels + x, cell / kCells * kCellPixels + y) = {
+                        static_cast<std::uint8_t>(shown.r), static_cast<std::uint8_t>(shown.g),
+                        static_cast<std::uint8_t>(shown.b), 255};
+                }
     return image;
 }
 
-SceneModel landModel(const Map& map, const ViewGround& ground, const PictureWindow& window) {
+SceneModel landModel(const Map& map, const ViewGround& ground, const PictureWindow& window, double swell) {
     SceneModel made;
     made.materials = {groundMaterial(ground.exaggeration()), thingsMaterial(), waterMaterial()};
-    const std::vector<float> water = waterOf(map, ground);
+    const std::vector<float> water = waterOf(map, ground, swell);
     Primitive things;
     things.material = kThings;
     Walls(ground, water, things).add();
     addBuildings(map, ground, things);
     addTrees(map, ground, things);
+    addSolitaryTrees(map, ground, things);
     Model::Mesh mesh;
     mesh.primitives.push_back(groundOf(ground, window));
     mesh.primitives.push_back(std::move(things));

@@ -19,13 +19,15 @@ inline constexpr double kFloor = 0.004; ///< y of the foot of the block of land,
 /// All paints, as a picture whose cells are looked up by `paintPlace`.
 [[nodiscard]] std::shared_ptr<const Image> paletteImage();
 [[nodiscard]] glm::vec2 paintPlace(Paint paint) noexcept;
+[[nodiscard]] glm::vec2 paintPlace(Paint paint, int shade) noexcept;
 [[nodiscard]] glm::vec3 colorOf(Paint paint) noexcept; ///< sRGB
 
 /// Of rivers and lakes; its pictures are bundled.
 [[nodiscard]] Material waterMaterial();
 
 /// The land of a view as one model, device metres: the ground with its cut walls, water, houses and trees. The ground
-/// is painted with a picture over `window`.
-[[nodiscard]] SceneModel landModel(const Map& map, const ViewGround& ground, const PictureWindow& window);
+/// is painted with a picture over `window`; waters stand `swell` metres higher than the map has them.
+[[nodiscard]] SceneModel landModel(const Map& map, const ViewGround& ground, const PictureWindow& window,
+                                   double swell = 0.0);
 
 } // namespace lumorph::navigation

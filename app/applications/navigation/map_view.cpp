@@ -33,12 +33,17 @@ double widestView(const glm::dvec2& mapSize) noexcept {
     return 0.999 * std::min(mapSize.x, mapSize.y) * kHalf.x / glm::length(kHalf);
 }
 
+double wholeView(const glm::dvec2& mapSize) noexcept {
+    return 1.04 * std::max(mapSize.x, mapSize.y * kHalf.x / kHalf.y);
+}
+
 MapView within(MapView view, const glm::dvec2& mapSize, double narrowest) noexcept {
-    const double widest = widestView(mapSize);
+    const double widest = wholeView(mapSize);
     view.width = std::clamp(view.width, std::min(narrowest, widest), widest);
     const double c = std::abs(std::cos(view.turn)), s = std::abs(std::sin(view.turn));
     const glm::dvec2 reach = view.scale() * glm::dvec2(c * kHalf.x + s * kHalf.y, s * kHalf.x + c * kHalf.y);
-    view.centre = glm::clamp(view.centre, reach, glm::max(mapSize - reach, reach));
+    const glm::dvec2 middle = 0.5 * mapSize;
+    view.centre = glm::clamp(view.centre, glm::min(reach, middle), glm::max(mapSize - reach, middle));
     return view;
 }
 

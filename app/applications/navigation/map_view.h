@@ -19,9 +19,11 @@ struct MapView {
     bool operator==(const MapView&) const = default;
 };
 
-/// How far a map of this size may be seen, and the view that comes closest to a wished one: nothing beyond the map is
-/// ever seen.
+/// How far a map of this size may be seen without anything beyond it, however it is turned; and all of it, with some of
+/// the board around.
 [[nodiscard]] double widestView(const glm::dvec2& mapSize) noexcept;
+[[nodiscard]] double wholeView(const glm::dvec2& mapSize) noexcept;
+/// The view that comes closest to a wished one: as little as can be of what is beyond the map.
 [[nodiscard]] MapView within(MapView view, const glm::dvec2& mapSize, double narrowest) noexcept;
 
 /// The way from one view to another that seems even to the eye: out, over and in (van Wijk and Nuij, "Smooth and

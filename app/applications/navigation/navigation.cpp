@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <numbers>
 #include <optional>
 #include <utility>
 
@@ -24,19 +25,21 @@ namespace {
 
 constexpr const char* kLandModel = "navigation land"; ///< assets that are in memory alone
 constexpr const char* kRainModel = "navigation rain";
-constexpr double kPanSpeed = 0.075;    ///< device metres a second at full lean
-constexpr double kZoomSpeed = 0.9;     ///< by which the width's logarithm changes, a second
-constexpr double kWheel = 0.16;        ///< the same a notch of the wheel
-constexpr double kIdle = 12.0;         ///< seconds until it goes back to the last place
-constexpr double kTurnSpeed = 0.7;     ///< radians a second
-constexpr double kDrift = 0.045;       ///< radians a second in which it turns while nobody is there
-constexpr double kSmooth = 0.18;       ///< seconds in which panning follows the hand
-constexpr double kStay = 4.5;          ///< seconds at a place
-constexpr double kTold = 30.0;         ///< seconds in which the report of an import is read
-constexpr double kNarrowest = 140.0;   ///< metres
-constexpr double kLookAhead = 0.8;     ///< seconds
-constexpr double kCloudHeight = 0.082; ///< y of the cloud, device metres
-constexpr float kPuff = 0.014F;
+constexpr double kPanSpeed = 0.075;             ///< device metres a second at full lean
+constexpr double kZoomSpeed = 0.9;              ///< by which the width's logarithm changes, a second
+constexpr double kWheel = 0.16;                 ///< the same a notch of the wheel
+constexpr double kIdle = 12.0;                  ///< seconds until it goes back to the last place
+constexpr double kTurnSpeed = 0.7;              ///< radians a second
+constexpr double kDrift = 0.045;                ///< radians a second in which it turns while nobody is there
+constexpr double kSmooth = 0.18;                ///< seconds in which panning follows the hand
+constexpr double kStay = 4.5;                   ///< seconds at a place
+constexpr double kTold = 30.0;                  ///< seconds in which the report of an import is read
+constexpr double kNarrowest = 140.0;            ///< metres
+constexpr double kLookAhead = 0.8;              ///< seconds
+constexpr double kCloudHeight = 0.082;          ///< y of the cloud, device metres
+constexpr float kPuff = 0.019F;                 ///< metres
+constexpr glm::dvec2 kDriftReach{0.055, 0.026}; ///< of a cloud that no hand leads, device metres
+constexpr glm::dvec2 kDriftTurn{26.0, 17.0};    ///< seconds
 
 Scene settingOf() {
     Scene scene = defaultScene();
@@ -53,7 +56,7 @@ Scene settingOf() {
     return scene;
 }
 
-std::shared_ptr<const SceneAssets> stillAssets(const Labels& labels) {
+std::shared_ptr<const SceneAssets> stillAssets(const Labels& labels, const Inset& inset) {
     // The pictures of table and water.
     Scene all = defaultScene();
     SceneItem water = demoItem(2, "Water", ShapeItem{});
@@ -63,22 +66,23 @@ std::shared_ptr<const SceneAssets> stillAssets(const Labels& labels) {
     assets->images[kPaletteImage] = paletteImage();
     assets->images[kRainImage] = rainImage();
     labels.addTo(*assets);
+    inset.addTo(*assets);
     return assets;
 }
 
 void addCloud(Scene& scene, const glm::dvec2& at) {
     constexpr struct {
         float x, y, z, size;
-    } kPuffs[] = {{0.0F, 0.001F, 0.0F, 1.25F},   {-0.011F, -0.001F, 0.002F, 0.95F}, {0.011F, -0.001F, -0.001F, 1.0F},
-                  {0.004F, 0.0F, 0.008F, 0.85F}, {-0.005F, 0.001F, -0.008F, 0.9F},  {0.019F, -0.003F, 0.003F, 0.6F}};
+    } kPuffs[] = {{0.0F, 0.001F, 0.0F, 1.25F},   {-0.019F, -0.001F, 0.002F, 0.95F}, {0.018F, -0.001F, -0.001F, 1.0F},
+                  {0.006F, 0.0F, 0.013F, 0.85F}, {-0.009F, 0.001F, -0.013F, 0.9F},  {0.031F, -0.003F, 0.004F, 0.6F}};
     for (int k = 0; k < 6; ++k) {
         const auto& puff = kPuffs[k];
         SceneItem item = demoItem(
             kFirstCloud + k, "Cloud",
-            ShapeItem{ShapeItem::Form::sphere, glm::vec3(kPuff) * glm::vec3(puff.size, 0.72F * puff.size, puff.size)});
+            ShapeItem{ShapeItem::Form::sphere, glm::vec3(kPuff) * glm::vec3(puff.size, 0.6F * puff.size, puff.size)});
         item.position = glm::vec3(glm::dvec3(at.x, kCloudHeight, at.y)) + glm::vec3(puff.x, puff.y, puff.z);
         item.material.name = "Cloud";
-        item.material.color = {0.90F, 0.92F, 0.96F};
+        item.material.color = {0.78F, 0.81F, 0.86F};
         item.material.roughness = 1.0F;
         item.opacity = 0.9F;
         scene.items.push_back(std::move(item));
@@ -134,7 +138,8 @@ NavigationProgram::NavigationProgram(std::uint64_t seed, std::shared_ptr<const M
       bending_(bending), comparing_(comparingCaption()) {
     if (map_->heights.heights().empty() || map_->cover.size() != map_->heights.heights().size())
         throw InvalidInput("map", "it has no heights, or no cover for each of them", "read it again");
-    still_ = stillAssets(labels_);
+    inset_.emplace(*map_);
+    still_ = stillAssets(labels_, *inset_);
     whole_ = std::make_unique<GroundPicture>(*map_, wholeWindow(*map_));
     while (!whole_->paint(GroundPicture::kSide * GroundPicture::kSide)) {
     }
@@ -144,9 +149,7 @@ NavigationProgram::NavigationProgram(std::uint64_t seed, std::shared_ptr<const M
 
 MapView NavigationProgram::home() const noexcept {
     const glm::dvec2 size = map_->heights.size();
-    MapView view{0.5 * size, 0.8 * widestView(size), 0.0};
-    if (!map_->places.empty()) view.centre = glm::mix(view.centre, map_->places.front().at, 0.4);
-    return within(view, size, kNarrowest);
+    return {0.5 * size, wholeView(size), 0.0};
 }
 
 void NavigationProgram::flyTo(const std::string& name) {
@@ -183,7 +186,10 @@ void NavigationProgram::listen(const ShowMoment& moment) {
         if (input.name == "wheel" && std::isfinite(input.value)) wheel_ += std::clamp(input.value, -8.0, 8.0);
         if (input.name == "key.turnLeft") left_ = held;
         if (input.name == "key.turnRight") right_ = held;
-        if (input.name == "key.rain") raining_ = held > 0.0;
+        if (input.name == "key.rain") {
+            if (!raining_) drifted_ = 0.0;
+            raining_ = held > 0.0;
+        }
         if (input.name == "key.bend" && held > 0.0) bending_ = bending_ == Bending::on ? Bending::off : Bending::on;
         if (input.name == "key.off" && held > 0.0)
             bending_ = bending_ == Bending::beside ? Bending::off : Bending::beside;
@@ -261,12 +267,14 @@ const GroundPicture& NavigationProgram::picture() const {
 /// What stays the same keeps its identity, so that nobody has to look at it again.
 void NavigationProgram::makeLand(double step) {
     const GroundPicture& shown = picture();
-    const bool same = ground_ && ground_->settled() && ground_->view() == view_ && window_ == shown.window();
+    const bool same = ground_ && ground_->settled() && ground_->view() == view_ && window_ == shown.window() &&
+                      swell_ == rain_.swell();
     if (same && land_) return;
     if (!ground_ || !ground_->settled() || ground_->view() != view_)
         ground_ = ViewGround(*map_, view_, ground_ ? &*ground_ : nullptr, step);
     window_ = shown.window();
-    land_ = std::make_shared<const SceneModel>(landModel(*map_, *ground_, window_));
+    swell_ = rain_.swell();
+    land_ = std::make_shared<const SceneModel>(landModel(*map_, *ground_, window_, swell_));
     auto assets = std::make_shared<SceneAssets>(*still_);
     assets->models[kLandModel] = land_;
     assets->images[kGroundImage] = shown.color();
@@ -274,11 +282,15 @@ void NavigationProgram::makeLand(double step) {
     assets_ = std::move(assets);
 }
 
-/// From a hand that is held over the device, or from its middle at the press of a key.
+/// From a hand that is held over the device, or from a cloud that drifts over it while a key is held.
 void NavigationProgram::letRain(const ShowMoment& moment) {
     constexpr double kHeld = 0.35; // metres over the device, at most
     cloud_.reset();
-    if (raining_) cloud_ = glm::dvec2(0.0);
+    if (raining_) {
+        const glm::dvec2 turn = 2.0 * std::numbers::pi * drifted_ / kDriftTurn;
+        cloud_ = kDriftReach * glm::dvec2(-std::cos(turn.x), std::sin(turn.y));
+        drifted_ += moment.step;
+    }
     for (const ShowBody& body : moment.bodies) {
         if (body.role != PoseRole::pointer) continue;
         const glm::dvec3 at(glm::inverse(glm::dmat4(moment.worldFromDevice)) * matrixOf(body.pose)[3]);
@@ -293,6 +305,7 @@ std::shared_ptr<const Scene> NavigationProgram::scene(const ShowMoment& moment) 
     auto scene = std::make_shared<Scene>(setting_);
     scene->viewDependence.on = bending_ != Bending::off;
     labels_.show(*scene);
+    inset_->show(*scene, *ground_, eyeOf(moment));
     if (cloud_) addCloud(*scene, *cloud_);
     if (rain_.dry()) return scene;
     SceneItem water =
@@ -318,7 +331,7 @@ ShowContent NavigationProgram::frame(const ShowMoment& moment) {
     content.assets = assets_;
     if (!rain_.dry()) {
         auto assets = std::make_shared<SceneAssets>(*assets_);
-        assets->models[kRainModel] = std::make_shared<const SceneModel>(rain_.model(*ground_, kCloudHeight));
+        assets->models[kRainModel] = std::make_shared<const SceneModel>(rain_.model(*map_, *ground_, kCloudHeight));
         content.assets = std::move(assets);
     }
     content.target = ground_->grid();

@@ -9,6 +9,7 @@
 #include "app/applications/demo.h"
 #include "app/applications/navigation/best_turn.h"
 #include "app/applications/navigation/ground_picture.h"
+#include "app/applications/navigation/inset.h"
 #include "app/applications/navigation/labels.h"
 #include "app/applications/navigation/map.h"
 #include "app/applications/navigation/map_view.h"
@@ -69,6 +70,7 @@ private:
     Visitor visitor_;
     Rain rain_;
     Labels labels_;
+    std::optional<Inset> inset_;
     std::shared_ptr<const SceneAssets> still_; ///< what never changes
     Scene setting_;
 
@@ -84,6 +86,8 @@ private:
     double in_ = 0.0, out_ = 0.0, left_ = 0.0, right_ = 0.0;
     double wheel_ = 0.0; ///< notches
     bool raining_ = false;
+    double drifted_ = 0.0;            ///< seconds that the cloud has drifted
+    double swell_ = 0.0;              ///< of the waters as `land_` has them, metres
     Bending usual_, bending_;         ///< where nobody chose otherwise, and now
     std::optional<glm::dvec2> cloud_; ///< over the device
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include <glm/vec3.hpp>
@@ -9,10 +10,18 @@
 
 namespace lumorph::navigation {
 
+inline constexpr int kStoreys = 4, kBays = 8; ///< that the picture of a wall has, the topmost storey without windows
+
 /// A flat face of a solid; its corners go round counterclockwise, seen from outside.
 struct Face {
     std::vector<glm::vec3> corners; ///< device metres
     Paint paint = Paint::white;
+    int shade = 0;
+    /// Of a wall with windows: its foot at one end, and what there is of bays along and of storeys up in a metre.
+    struct Windows {
+        glm::vec3 foot{0.0F}, bays{0.0F}, storeys{0.0F};
+    };
+    std::optional<Windows> windows;
 };
 
 /// A building as it stands on the device, `size` times as large as it is. Convex.

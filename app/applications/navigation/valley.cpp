@@ -153,16 +153,16 @@ public:
         const double steep = glm::length(map_.heights.slopeAt(place, 0.0));
         const double patch = fractalAt(place / 130.0, 3, seed_ + 6);
         glm::vec3 color =
-            mixed({0.50F, 0.63F, 0.29F}, {0.63F, 0.66F, 0.40F}, smoothStep(520.0, 1100.0, height + 90.0 * patch));
-        color = mixed(color, {0.30F, 0.44F, 0.22F}, 0.85 * static_cast<double>(map_.woods[k]));
+            mixed({0.46F, 0.54F, 0.31F}, {0.58F, 0.58F, 0.40F}, smoothStep(520.0, 1100.0, height + 90.0 * patch));
+        color = mixed(color, {0.28F, 0.38F, 0.22F}, 0.85 * static_cast<double>(map_.woods[k]));
         color = mixed(color, {0.62F, 0.58F, 0.52F},
                       smoothStep(0.62, 1.05, steep + 0.18 * patch) * smoothStep(600.0, 900.0, height));
         color = mixed(color, {0.66F, 0.63F, 0.58F}, smoothStep(960.0, 1110.0, height + 70.0 * patch));
         const double snow =
             smoothStep(kSnowFrom - 60.0, kSnowFrom + 60.0, height + 130.0 * patch - 150.0 * std::max(0.0, steep - 0.8));
         color = mixed(color, {0.96F, 0.97F, 1.0F}, snow);
-        color = mixed(color, {0.74F, 0.70F, 0.60F},
-                      0.75 * (1.0 - smoothStep(330.0, 520.0, glm::distance(place, plan_.town) + 90.0 * patch)));
+        color = mixed(color, {0.58F, 0.55F, 0.47F},
+                      0.7 * (1.0 - smoothStep(180.0, 380.0, glm::distance(place, plan_.town) + 90.0 * patch)));
         const double water = distances_.at(place, 0.0);
         if (!std::isnan(map_.water[k])) color = shore(color, static_cast<double>(map_.water[k]) - height, water);
         return color * static_cast<float>(1.0 + 0.05 * patch);
@@ -173,7 +173,7 @@ private:
         return glm::mix(a, b, static_cast<float>(share));
     }
     static glm::vec3 shore(const glm::vec3& land, double depth, double distance) {
-        const glm::vec3 sand(0.87F, 0.80F, 0.62F), shallow(0.42F, 0.68F, 0.70F), deep(0.10F, 0.34F, 0.48F);
+        const glm::vec3 sand(0.78F, 0.72F, 0.57F), shallow(0.40F, 0.60F, 0.62F), deep(0.10F, 0.34F, 0.48F);
         if (depth <= 0.0) return mixed(sand, land, smoothStep(4.0, 22.0, distance));
         return mixed(shallow, deep, smoothStep(0.5, 14.0, depth));
     }

@@ -28,9 +28,11 @@ ViewGround::ViewGround(const Map& map, const MapView& view, const ViewGround* be
     const glm::dvec2 down = (view.placeAt({-kHalf.x, kHalf.y}) - corner) / static_cast<double>(kRows - 1);
     heights_.reserve(static_cast<std::size_t>(kColumns * kRows));
     for (int j = 0; j < kRows; ++j)
-        for (int i = 0; i < kColumns; ++i)
-            heights_.push_back(static_cast<float>(
-                map.heights.at(corner + static_cast<double>(i) * across + static_cast<double>(j) * down, detail)));
+        for (int i = 0; i < kColumns; ++i) {
+            const glm::dvec2 place = corner + static_cast<double>(i) * across + static_cast<double>(j) * down;
+            heights_.push_back(
+                static_cast<float>(map.holds(place) ? map.heights.at(place, detail) : map.heights.lowest()));
+        }
     const auto [least, most] = std::ranges::minmax(heights_);
     const double relief = std::max(static_cast<double>(most - least), kLeastRelief);
     low_ = static_cast<double>(least);

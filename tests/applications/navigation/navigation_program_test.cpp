@@ -63,6 +63,7 @@ TEST(NavigationProgram, FliesByItselfFromPlaceToPlace) {
         }
         for (const glm::dvec2& way : {glm::dvec2(-1, -1), {1, -1}, {1, 1}, {-1, 1}}) {
             const glm::dvec2 corner = program.view().placeAt(way * kHalf);
+            if (program.view().width > widestView(size)) continue; // all of it is seen, and the board around
             ASSERT_GE(std::min(corner.x, corner.y), -0.01) << "beyond the map";
             ASSERT_LE(std::max(corner.x - size.x, corner.y - size.y), 0.01) << "beyond the map";
         }
@@ -107,7 +108,7 @@ TEST(NavigationProgram, FliesOnlyWhileThePointerMovesOrIsHeld) {
     for (const bool held : {false, true}) {
         NavigationProgram program(1, valley());
         Visit visit(program);
-        visit.frame({{"wheel", 4.0}}); // there is room to pan
+        visit.frame({{"wheel", 8.0}}); // there is room to pan
         visit.frame({{"pointer.x", 0.5}, {"pointer.held", held ? 1.0 : 0.0}});
         visit.frames(1.5);
         const glm::dvec2 from = program.view().centre;
@@ -164,6 +165,22 @@ TEST(NavigationProgram, NextRestartAndGoToFlyThere) {
     EXPECT_TRUE(program.playsItself());
 }
 
+// A picture of its own, at most twice as wide as the view, and not that of all the land.
+TEST(NavigationProgram, WhoArrivesSeesTheGroundSharply) {
+    NavigationProgram program(1, valley());
+    Visit first(program, kLongFrame);
+    land(program, first, "Merinhaven");
+    Visit visit(program);
+    program.flyTo("Saint Alba's church"); // the shortest way
+    visit.frame();
+    while (program.flies()) visit.frame();
+    for (const auto& primitive : visit.content().assets->models.at("navigation land")->model.meshes[0].primitives) {
+        if (primitive.material != 0) continue;
+        const glm::vec2 west = primitive.texcoords.front(), east = primitive.texcoords[105];
+        EXPECT_GT(glm::distance(west, east), 0.45F);
+    }
+}
+
 TEST(NavigationProgram, TheSameInputsGiveTheSameShow) {
     const auto play = [] {
         NavigationProgram program(7, valley());
@@ -199,6 +216,82 @@ TEST(NavigationProgram, LabelsAreReadFromAllFourSides) {
         }
     }
     EXPECT_GE(read, 4 * 3);
+}
+
+/// Where the eye sees a point of the air on a level.
+glm::dvec3 seenOn(double level, const glm::dvec3& point, const glm::dvec3& eye) {
+    return eye + (eye.y - level) / (eye.y - point.y) * (point - eye);
+}
+
+const SceneItem* itemNamed(const Scene& scene, const std::string& name, std::size_t which = 0) {
+    for (const SceneItem& item : scene.items)
+        if (item.name == name && which-- == 0) return &item;
+    return nullptr;
+}
+
+TEST(NavigationProgram, NamesDoNotReachOverTheRim) {
+    NavigationProgram program(1, valley());
+    Visit visit(program, kLongFrame);
+    land(program, visit, "Lake Merin");
+    int read = 0;
+    for (const glm::dvec3& eye : {glm::dvec3(0.0, 0.45, 0.55), {0.5, 0.4, 0.3}, {-0.45, 0.5, -0.4}}) {
+        visit.look(glm::vec3(eye));
+        for (int stop = 0; stop < 3; ++stop) {
+            visit.frame({{"key.right", 1.0}});
+            visit.frames(0.4);
+            visit.frame({{"key.right", 0.0}});
+            visit.frames(2.5);
+            const auto& items = visit.content().scene->items;
+            for (std::size_t k = 0; k < items.size(); ++k) {
+                if (items[k].name != "Label" || items[k].opacity < 0.99F) continue;
+                ++read;
+                const SceneItem& pole = items[k + 1];
+                ASSERT_EQ(pole.name, "Pole");
+                const double foot = static_cast<double>(pole.position.y) - 0.5 * static_cast<double>(pole.scale.y);
+                const auto& model = visit.content().assets->models.at(std::get<MeshItem>(items[k].kind).model);
+                for (const glm::vec3& corner : model->model.meshes[0].primitives[0].positions) {
+                    const glm::vec3 at = items[k].position + items[k].rotation * (items[k].scale * corner);
+                    const glm::dvec3 seen = seenOn(foot, glm::dvec3(at), eye);
+                    EXPECT_LE(std::abs(seen.x), 0.105 + 1e-4);
+                    EXPECT_LE(std::abs(seen.z), 0.075 + 1e-4);
+                }
+            }
+        }
+    }
+    EXPECT_GE(read, 12);
+}
+
+TEST(NavigationProgram, AllOfTheLandIsSeenFromFarAndASmallMapShowsWhereOneIs) {
+    NavigationProgram program(1, valley());
+    Visit visit(program, kLongFrame);
+    visit.look({0.0F, 0.45F, 0.55F});
+    visit.frame({{"key.out", 1.0}});
+    visit.frames(6.0);
+    visit.frame({{"key.out", 0.0}});
+    for (const glm::dvec2& corner : {glm::dvec2(0.0), {8192.0, 0.0}, {0.0, 8192.0}, {8192.0, 8192.0}}) {
+        const glm::dvec2 point = glm::abs(program.view().pointAt(corner));
+        EXPECT_LT(point.x, 0.105);
+        EXPECT_LT(point.y, 0.075);
+    }
+    EXPECT_FALSE(itemNamed(*visit.content().scene, "Inset"));
+    land(program, visit, "River Orra");
+    const Scene& scene = *visit.content().scene;
+    const SceneItem* sheet = itemNamed(scene, "Inset");
+    ASSERT_TRUE(sheet);
+    glm::dvec3 middle(0.0);
+    double around = 0.0;
+    for (std::size_t k = 0; k < 4; ++k) {
+        const SceneItem* side = itemNamed(scene, "Inset frame", k);
+        ASSERT_TRUE(side);
+        middle += 0.25 * glm::dvec3(side->position);
+        around += static_cast<double>(side->scale.x / sheet->scale.x) - 0.0007;
+    }
+    const auto& shape = visit.content().assets->models.at(std::get<MeshItem>(sheet->kind).model);
+    const double side = 2.0 * static_cast<double>(shape->model.meshes[0].primitives[0].positions[2].x) * 0.92;
+    const glm::dvec3 off = (middle - glm::dvec3(sheet->position)) / static_cast<double>(sheet->scale.x);
+    EXPECT_NEAR(off.x / side + 0.5, placeNamed("River Orra").at.x / 8192.0, 0.01);
+    EXPECT_NEAR(off.z / side + 0.5, placeNamed("River Orra").at.y / 8192.0, 0.01);
+    EXPECT_NEAR(around, 2.0 * (1.0 + 15.0 / 21.0) * program.view().width / 8192.0 * side, 1e-3);
 }
 
 /// Where the loop's own formula puts a point of the device on the map, written out once more.
@@ -311,6 +404,35 @@ TEST(NavigationProgram, RainFromAHeldHandEndsInTheWater) {
     visit.frames(30.0);
     EXPECT_TRUE(program.rain().dry()) << "it runs off";
     EXPECT_FALSE(findItem(*visit.content().scene, kFirstCloud));
+}
+
+std::size_t trianglesOf(const ShowContent& content, int material) {
+    std::size_t triangles = 0;
+    for (const auto& primitive : content.assets->models.at("navigation land")->model.meshes[0].primitives)
+        if (primitive.material == material) triangles += primitive.triangles.size();
+    return triangles;
+}
+
+TEST(NavigationProgram, RainWetsTheGroundSplashesAndLetsTheRiverRise) {
+    constexpr int kWaterMaterial = 2;
+    NavigationProgram program(3, valley());
+    Visit visit(program, kLongFrame);
+    land(program, visit, "River Orra");
+    const std::size_t before = trianglesOf(visit.content(), kWaterMaterial);
+    const glm::dvec2 under = program.view().placeAt({0.03, -0.02}), elsewhere = program.view().placeAt({-0.09, 0.06});
+    visit.see({ShowBody{"Hand", PoseRole::pointer, {{0.03, 0.15, -0.02}, {1.0, 0.0, 0.0, 0.0}}}});
+    visit.frames(3.0);
+    EXPECT_GT(program.rain().wetnessAt(under), 0.5F);
+    EXPECT_EQ(program.rain().wetnessAt(elsewhere), 0.0F);
+    EXPECT_GT(program.rain().splashes().size(), 30U);
+    visit.frames(5.0);
+    EXPECT_GT(program.rain().swell(), 0.5);
+    EXPECT_LE(program.rain().swell(), Rain::kMostSwell);
+    EXPECT_GT(trianglesOf(visit.content(), kWaterMaterial), before + before / 10);
+    visit.see({});
+    visit.frames(32.0);
+    EXPECT_EQ(program.rain().wetnessAt(under), 0.0F);
+    EXPECT_EQ(program.rain().swell(), 0.0);
 }
 
 TEST(NavigationProgram, TheFarEdgeBendsForWhoLooksWhereHeWants) {

@@ -1,5 +1,7 @@
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <set>
 #include <string>
 
 #include <gtest/gtest.h>
@@ -9,6 +11,7 @@
 #include "app/applications/navigation/rain.h"
 #include "app/applications/navigation/search.h"
 #include "app/applications/navigation/shapes.h"
+#include "app/applications/navigation/solid.h"
 #include "app/applications/navigation/valley.h"
 
 // The bundled map: water runs down it, houses stand on dry ground, and places are found by their names.
@@ -35,13 +38,99 @@ TEST(BundledValley, HasATownOfHousesOnDryGround) {
         ASSERT_GE(doubleArea(building.outline), 0.0);
         if (building.grounded && glm::distance(building.outline.front(), square) < 700.0) ++houses;
         if (!building.grounded) continue;
-        for (const glm::dvec2& corner : building.outline) ASSERT_FALSE(map.isWater(map.sampleAt(corner)));
+        for (const glm::dvec2& corner : building.outline)
+            ASSERT_FALSE(map.isWater(map.sampleAt(corner))) << glm::distance(corner, square) << " m from the square";
     }
     EXPECT_GE(houses, 100U);
-    EXPECT_LE(houses, 400U);
+    EXPECT_LE(houses, 850U);
     for (const Place& place : map.places) {
         EXPECT_GE(std::min(place.at.x, place.at.y), 0.0) << place.name.english;
         EXPECT_LE(std::max(place.at.x, place.at.y), 8192.0) << place.name.english;
+    }
+}
+
+/// The distance to the nearest piece of any road, less half its width, and the way of that piece.
+std::pair<double, glm::dvec2> nearestRoad(const Map& map, const glm::dvec2& place) {
+    std::pair<double, glm::dvec2> nearest{1e9, {1.0, 0.0}};
+    for (const Road& road : map.roads)
+        for (std::size_t k = 0; k + 1 < road.line.size(); ++k) {
+            const glm::dvec2 from = road.line[k], piece = road.line[k + 1] - from;
+            const double length = glm::length(piece);
+            if (length < 1e-9) continue;
+            const glm::dvec2 way = piece / length;
+            const glm::dvec2 off = place - from - std::clamp(glm::dot(place - from, way), 0.0, length) * way;
+            const double distance = glm::length(off) - 0.5 * road.width;
+            if (distance < nearest.first) nearest = {distance, way};
+        }
+    return nearest;
+}
+
+TEST(BundledValley, HousesStandAlongTheirStreetsAndDiffer) {
+    const Map& map = valleyMap();
+    std::size_t houses = 0, aligned = 0, onStreet = 0;
+    std::map<Building::Roof, std::size_t> roofs;
+    std::set<Paint> walls, tops;
+    std::set<int> shades;
+    std::set<long> heights; // decimetres
+    for (const Building& building : map.buildings) {
+        if (!building.windows || building.landmark) continue;
+        ++houses;
+        ++roofs[building.roof];
+        walls.insert(building.walls);
+        tops.insert(building.top);
+        shades.insert(building.shade);
+        heights.insert(std::lround(10.0 * (building.eaves - building.base)));
+        const auto& o = building.outline;
+        ASSERT_EQ(o.size(), 4U);
+        const auto [distance, way] = nearestRoad(map, 0.25 * (o[0] + o[1] + o[2] + o[3]));
+        const double along = std::abs(glm::dot(glm::normalize(o[1] - o[0]), way));
+        if (along > 0.96 || along < 0.28) ++aligned;
+        if (distance < 0.0) ++onStreet;
+    }
+    EXPECT_GE(houses, 500U);
+    EXPECT_GE(aligned, houses * 9 / 10) << "the ridge runs along or across the street";
+    EXPECT_EQ(onStreet, 0U);
+    for (const auto roof : {Building::Roof::gable, Building::Roof::hip, Building::Roof::flat})
+        EXPECT_GE(roofs[roof], houses / 40);
+    EXPECT_GE(walls.size(), 6U);
+    EXPECT_GE(tops.size(), 4U);
+    EXPECT_EQ(shades.size(), static_cast<std::size_t>(kShades));
+    EXPECT_GE(heights.size(), 20U);
+    EXPECT_GE(map.trees.size(), 300U);
+}
+
+// The area vectors of a closed solid's faces add up to nothing: here to that of the floor, which is left out.
+TEST(Solid, IsClosedUnderEachRoof) {
+    const Map& map = valleyMap();
+    const ViewGround ground(map, {map.places.front().at, 400.0, 0.0});
+    for (const auto roof :
+         {Building::Roof::flat, Building::Roof::gable, Building::Roof::pyramid, Building::Roof::hip}) {
+        Building building;
+        building.outline = rectangle(map.places.front().at, {0.6, 0.8}, 14.0, 9.0);
+        building.base = 430.0;
+        building.eaves = 436.0;
+        building.ridge = roof == Building::Roof::flat ? 436.0 : 440.0;
+        building.roof = roof;
+        building.windows = true;
+        building.grounded = false;
+        glm::dvec3 sum(0.0);
+        std::size_t walls = 0;
+        for (const Face& face : solidOf(building, ground, 1.0)) {
+            for (std::size_t k = 1; k + 1 < face.corners.size(); ++k)
+                sum += 0.5 * glm::cross(glm::dvec3(face.corners[k] - face.corners[0]),
+                                        glm::dvec3(face.corners[k + 1] - face.corners[0]));
+            if (!face.windows) continue;
+            ++walls;
+            const float bays = glm::dot(face.corners[1] - face.corners[0], face.windows->bays);
+            EXPECT_NEAR(bays, std::round(bays), 1e-3F) << "no window is cut";
+            EXPECT_GE(bays, 2.999F);
+            EXPECT_NEAR(glm::dot(face.corners.back() - face.corners[0], face.windows->storeys), 2.0F, 1e-3F);
+        }
+        const double metre = 0.21 / 400.0;
+        EXPECT_EQ(walls, 4U);
+        EXPECT_NEAR(sum.x, 0.0, 1e-9);
+        EXPECT_NEAR(sum.z, 0.0, 1e-9);
+        EXPECT_NEAR(sum.y, 14.0 * 9.0 * metre * metre, 1e-7) << static_cast<int>(roof);
     }
 }
 
