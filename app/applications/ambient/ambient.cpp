@@ -7,6 +7,8 @@
 #include <utility>
 
 #include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
+#include <glm/vec4.hpp>
 
 #include "app/applications/ambient/caption.h"
 #include "app/applications/ambient/simulated_year.h"
@@ -78,6 +80,9 @@ ShowContent AmbientProgram::frame(const ShowMoment& moment) {
     view_.utc = clock_->utc();
     view_.touched.reset();
     if (visitor_.there() && visitor_.pointer()) view_.touched = *visitor_.pointer() * kHalf;
+    const glm::dvec3 eye(
+        moment.eye.value_or(moment.installation ? moment.installation->eye : glm::vec3(0.0F, 0.5F, 0.5F)));
+    view_.eye = glm::dvec3(glm::inverse(glm::dmat4(moment.worldFromDevice)) * glm::dvec4(eye, 1.0));
     lookUp();
     lookAhead();
     blow(moment.step);
@@ -137,7 +142,30 @@ void AmbientProgram::lookAhead() {
         coming.weather = settings_.weather->at(then);
         coming.day = sunAt(settings_.place, then).elevation > kHorizon;
     }
+    lookAtCards(hour != hour_);
     hour_ = hour;
+}
+
+/// Every third hour of the place's clock.
+void AmbientProgram::lookAtCards(bool anew) {
+    constexpr double kApart = 3600.0 * kCardHours;
+    const double offset = settings_.place.utcOffset;
+    const auto number = static_cast<long long>(std::floor((view_.utc + offset) / kApart)) + 1;
+    for (int k = 0; k < kCards; ++k) {
+        View::Card& card = view_.cards[static_cast<std::size_t>(k)];
+        const double then = kApart * static_cast<double>(number + k) - offset;
+        card.ahead = (then - view_.utc) / 3600.0;
+        if (!anew) continue;
+        card.slot = static_cast<int>((((number + k) % kCards) + kCards) % kCards);
+        card.day = sunAt(settings_.place, then).elevation > kHorizon;
+        card.weather = settings_.weather->at(then);
+        for (const double beside : {-3600.0, 3600.0}) {
+            const WeatherHour hour = settings_.weather->at(then + beside);
+            card.weather.rain = std::max(card.weather.rain, hour.rain);
+            card.weather.snow = std::max(card.weather.snow, hour.snow);
+            card.weather.thunder = std::max(card.weather.thunder, hour.thunder);
+        }
+    }
 }
 
 /// Light's sea goes after the wind; clouds go with it.

@@ -57,6 +57,7 @@ public:
 private:
     void lookUp();
     void lookAhead();
+    void lookAtCards(bool anew);
     void blow(double step);
     void slosh(const ShowMoment& moment);
     void turnFog(double step);

@@ -9,8 +9,10 @@
 #include <glm/geometric.hpp>
 
 #include "app/applications/ambient/ambient.h"
+#include "app/applications/ambient/coming.h"
 #include "app/applications/ambient/simulated_year.h"
 #include "core/base/error.h"
+#include "core/base/resources.h"
 #include "core/motion/causal_split.h"
 #include "core/motion/frequency_split.h"
 #include "core/motion/surface_heights.h"
@@ -205,26 +207,91 @@ TEST(AmbientProgram, FogAndCloudsDriftWithTheWind) {
     EXPECT_GT(glm::dot(program.view().drifted, towards), 0.003);
 }
 
-TEST(AmbientProgram, TheComingHoursAreThoseOfTheForecast) {
+TEST(AmbientProgram, TheCardsTellOfEveryThirdHourOfTheForecast) {
     std::vector<WeatherHour> hours(48);
-    for (std::size_t k = 0; k < hours.size(); ++k) hours[k].rain = k == 14 ? 5.0 : 0.0;
+    for (std::size_t k = 0; k < hours.size(); ++k) {
+        hours[k].temperature = static_cast<double>(k) - 14.4;
+        hours[k].rain = k == 14 ? 5.0 : 0.0;
+    }
     AmbientSettings settings;
     settings.weather = std::make_shared<const Weather>(*timeFrom("2026-05-17T00:00", 3600.0), hours);
     settings.begin = timeFrom("2026-05-17T09:30", 3600.0);
+    settings.place.utcOffset = 3600.0;
     AmbientProgram program(1, settings);
     Visit visit(program);
     visit.frame();
+    const auto itemOfCard = [&](int k) {
+        return visit.item(kFirstCard + program.view().cards[static_cast<std::size_t>(k)].slot);
+    };
     float before = -1.0F;
-    for (int k = 0; k < kComingHours; ++k) {
-        const float x = visit.item(kFirstComing + 3 * k).position.x;
-        EXPECT_GT(x, before) << "the nearest first";
-        before = x;
-        EXPECT_EQ(visit.item(kFirstComing + 3 * k + 2).visible, k == 4) << "it rains at 14, in hour " << 10 + k;
-        EXPECT_NEAR(program.view().coming[static_cast<std::size_t>(k)].ahead, 0.5 + k, 1e-9);
+    for (int k = 0; k < kCards; ++k) {
+        const View::Card& card = program.view().cards[static_cast<std::size_t>(k)];
+        EXPECT_NEAR(card.ahead, 2.5 + 3.0 * k, 1e-9);
+        const ForecastCard says = cardOf(program.view(), card);
+        EXPECT_EQ(says.hour, (12 + 3 * k) % 24);
+        EXPECT_EQ(says.degrees, std::lround(12.0 + 3.0 * k - 14.4));
+        EXPECT_EQ(says.sign == WeatherSign::rain, k == 1) << "a shower at 14 is told at 15";
+        EXPECT_GT(itemOfCard(k).position.x, before) << "the nearest first";
+        before = itemOfCard(k).position.x;
     }
-    const float from = visit.item(kFirstComing + 3 * 4).position.x;
+    const float apart = itemOfCard(1).position.x - itemOfCard(0).position.x;
+    EXPECT_GT(apart, Coming::kCardWidth) << "none hides another";
+    const float from = itemOfCard(0).position.x;
     visit.frames(1.0);
-    EXPECT_LT(visit.item(kFirstComing + 3 * 4).position.x, from) << "it comes nearer";
+    EXPECT_LT(itemOfCard(0).position.x, from) << "it comes nearer";
+}
+
+TEST(AmbientForecastCard, SaysTheWorstOfTheWeather) {
+    WeatherHour hour;
+    hour.cloudCover = 0.1;
+    EXPECT_EQ(signOf(hour, true), WeatherSign::sun);
+    EXPECT_EQ(signOf(hour, false), WeatherSign::moon);
+    hour.cloudCover = 0.5;
+    EXPECT_EQ(signOf(hour, true), WeatherSign::sunAndCloud);
+    hour.cloudCover = 0.9;
+    EXPECT_EQ(signOf(hour, true), WeatherSign::cloud);
+    hour.visibility = 300.0;
+    EXPECT_EQ(signOf(hour, true), WeatherSign::fog);
+    hour.rain = 0.5;
+    EXPECT_EQ(signOf(hour, true), WeatherSign::rain);
+    hour.snow = 1.0;
+    EXPECT_EQ(signOf(hour, true), WeatherSign::snow);
+    hour.thunder = 1.0;
+    EXPECT_EQ(signOf(hour, true), WeatherSign::thunder);
+}
+
+// Legible means contrast: what is written is at least seven times as light as its plate (WCAG 2, level AAA).
+TEST(AmbientForecastCard, WritesWithTheContrastOfAAndEverySignDiffers) {
+    const Font font(resourceFile("fonts/Inter-SemiBold.otf"));
+    const auto light = [](const Image::Pixel& pixel) {
+        const auto linear = [](std::uint8_t byte) {
+            const double share = byte / 255.0;
+            return share <= 0.04045 ? share / 12.92 : std::pow((share + 0.055) / 1.055, 2.4);
+        };
+        return 0.2126 * linear(pixel[0]) + 0.7152 * linear(pixel[1]) + 0.0722 * linear(pixel[2]);
+    };
+    std::vector<Image> pictures;
+    for (const WeatherSign sign :
+         {WeatherSign::sun, WeatherSign::moon, WeatherSign::sunAndCloud, WeatherSign::moonAndCloud, WeatherSign::cloud,
+          WeatherSign::fog, WeatherSign::rain, WeatherSign::snow, WeatherSign::thunder}) {
+        pictures.push_back(pictureOf({sign, 14, -8}, font));
+        const Image& picture = pictures.back();
+        double most = 0.0;
+        int inSign = 0, inWords = 0;
+        for (int y = 0; y < kCardPixels.y; ++y)
+            for (int x = 0; x < kCardPixels.x; ++x) {
+                const double here = light(picture.at(x, y));
+                most = std::max(most, here);
+                const bool bright = here > 0.1;
+                (y > 52 && y < 148 ? inSign : inWords) += bright ? 1 : 0;
+            }
+        const double plate = light(picture.at(kCardPixels.x / 2, 5));
+        EXPECT_GT((most + 0.05) / (plate + 0.05), 7.0);
+        EXPECT_GT(inSign, 500);
+        EXPECT_GT(inWords, 700);
+        EXPECT_EQ(picture.at(0, 0)[3], 0) << "round corners";
+        for (std::size_t k = 0; k + 1 < pictures.size(); ++k) EXPECT_NE(pictures[k], picture);
+    }
 }
 
 TEST(AmbientProgram, RefusesSettingsThatAreNone) {
