@@ -17,7 +17,7 @@ constexpr const char* kCardModel = "ambient card";
 constexpr double kCardHeight = Coming::kCardWidth * kCardPixels.y / kCardPixels.x;
 /// Middles of the cards that are due now and at the end, metres: where the sea is free of land, and so far from the far
 /// rim that a viewer in front sees them on the device.
-constexpr glm::dvec3 kRowFrom{0.0100, 0.0480, -0.0440}, kRowTo{0.0940, 0.0480, -0.0440};
+constexpr glm::dvec3 kRowFrom{0.0100, 0.0450, -0.0400}, kRowTo{0.0940, 0.0450, -0.0400};
 constexpr double kShown = 12.0;             ///< hours ahead
 constexpr double kComes = 1.5, kGoes = 1.2; ///< hours in which a card comes and goes
 

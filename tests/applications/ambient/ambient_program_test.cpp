@@ -2,6 +2,8 @@
 #include <cmath>
 #include <numeric>
 #include <string>
+#include <thread>
+#include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -207,6 +209,28 @@ TEST(AmbientProgram, FogAndCloudsDriftWithTheWind) {
     EXPECT_GT(glm::dot(program.view().drifted, towards), 0.003);
 }
 
+TEST(AmbientProgram, FogStaysOnTheDeviceAndFillsLowPlacesFirst) {
+    float before = 0.0F;
+    for (const double visibility : {4000.0, 2000.0, 300.0}) {
+        WeatherHour hour;
+        hour.visibility = visibility;
+        AmbientProgram program(1, constant(hour));
+        Visit visit(program);
+        visit.frames(7.0); // one of the banks is full
+        float top = 0.0F;
+        for (int k = 0; k < kFogs; ++k) {
+            const SceneItem& item = visit.item(kFirstFog + k);
+            const auto& fog = std::get<FogItem>(item.kind);
+            EXPECT_LT(std::abs(item.position.x) + 0.5F * fog.size.x, 0.105F);
+            EXPECT_LT(std::abs(item.position.z) + 0.5F * fog.size.z, 0.075F);
+            EXPECT_LT(item.position.y - 0.5F * fog.size.y, static_cast<float>(kSeaLevel)) << "it lies on the water";
+            top = std::max(top, item.position.y + 0.5F * fog.size.y);
+        }
+        EXPECT_GT(top, before) << "the thicker, the higher";
+        before = top;
+    }
+}
+
 TEST(AmbientProgram, TheCardsTellOfEveryThirdHourOfTheForecast) {
     std::vector<WeatherHour> hours(48);
     for (std::size_t k = 0; k < hours.size(); ++k) {
@@ -292,6 +316,66 @@ TEST(AmbientForecastCard, WritesWithTheContrastOfAAndEverySignDiffers) {
         EXPECT_EQ(picture.at(0, 0)[3], 0) << "round corners";
         for (std::size_t k = 0; k + 1 < pictures.size(); ++k) EXPECT_NE(pictures[k], picture);
     }
+}
+
+std::string forecastText(double degrees) {
+    return R"({"hourly": {"time": ["2026-07-01T00:00"], "temperature_2m": [)" + std::to_string(degrees) +
+           R"(], "precipitation": [0], "cloud_cover": [0], "wind_speed_10m": [3.6], "wind_direction_10m": [0]}})";
+}
+
+TEST(AmbientProgram, ALaterForecastTakesThePlaceOfTheLastAndItsAgeIsSaid) {
+    AmbientSettings settings = constant(WeatherHour{});
+    std::optional<DemoNews> next = DemoNews{{}, 3.0 * 3600.0};
+    settings.feed = [&](const std::string& option) {
+        EXPECT_EQ(option, "weather");
+        return std::exchange(next, std::nullopt);
+    };
+    AmbientProgram program(1, settings);
+    Visit visit(program);
+    visit.frame();
+    ASSERT_TRUE(visit.content().caption);
+    EXPECT_NE(visit.content().caption->sentence.english.find("The forecast is 3 hours old."), std::string::npos);
+    EXPECT_NE(visit.content().caption->sentence.in(Language::german).find("3 Stunden alt"), std::string::npos);
+    EXPECT_EQ(program.view().weather.temperature, 15.0);
+    const auto until = [&](double degrees) {
+        for (int k = 0; k < 2000 && program.view().weather.temperature != degrees; ++k) {
+            visit.frame();
+            std::this_thread::yield();
+        }
+        return program.view().weather.temperature;
+    };
+    next = DemoNews{"no forecast at all", 0.0};
+    visit.frames(0.5);
+    EXPECT_EQ(program.view().weather.temperature, 15.0) << "the last one goes on";
+    EXPECT_GT(program.forecastAge(), 3.0 * 3600.0);
+    next = DemoNews{forecastText(21.5), 0.0};
+    EXPECT_EQ(until(21.5), 21.5);
+    EXPECT_LT(program.forecastAge(), 60.0);
+    EXPECT_EQ(program.view().cards.front().weather.temperature, 21.5) << "cards too";
+}
+
+TEST(AmbientProgram, TheRealClockIsShownAndReturnedTo) {
+    AmbientSettings settings = constant(WeatherHour{});
+    double now = 1'780'050'000.0;
+    settings.now = [&now] { return now; };
+    settings.daySeconds = 86'400.0;
+    AmbientProgram program(1, settings);
+    Visit visit(program);
+    visit.frame();
+    EXPECT_DOUBLE_EQ(program.view().utc, now);
+    now += 3600.0 * 7.0; // the machine has slept
+    visit.frames(8.0);
+    EXPECT_NEAR(program.view().utc, now, 1.0);
+    visit.frame({{"key.left", 1.0}});
+    visit.frames(2.0);
+    EXPECT_LT(program.view().utc, now - 3600.0) << "a visitor looks at the hours before";
+    visit.frame({{"key.left", 0.0}});
+    visit.frames(Visitor::kSilence + 8.0);
+    EXPECT_NEAR(program.view().utc, now, 1.0);
+    EXPECT_EQ(settingsFrom({{"clock", "real"}}).daySeconds, 86'400.0);
+    EXPECT_TRUE(settingsFrom({{"clock", "real"}}).now);
+    EXPECT_FALSE(settingsFrom({}).now) << "the quick day is the usual one";
+    EXPECT_THROW((void)settingsFrom({{"clock", "slow"}}), InvalidInput);
 }
 
 TEST(AmbientProgram, RefusesSettingsThatAreNone) {
