@@ -15,18 +15,18 @@ namespace {
 
 using Primitive = Model::Primitive;
 
-constexpr float kRim = 0.5F;          ///< of the field's shape
-constexpr float kBevelDeep = 0.0011F; ///< by which the top bends down to its rim, metres
-constexpr float kHollow = 0.0011F;    ///< depth of ice that is about to be gone, metres
-constexpr double kBulge = 0.0003;     ///< by which the shoulder stands out, metres
-constexpr float kShoulder = 0.0009F;  ///< metres under the rim's edge
-constexpr double kFoot = 0.0007;      ///< by which sides draw in down to the foot, metres
-constexpr int kBlock = 8;             ///< squares of level ice that are drawn as one
-constexpr double kCrackWide = 0.0004; ///< of its dark half, metres
-constexpr double kCrackRim = 0.00035; ///< of its bright rim, metres
-constexpr float kDeepInIce = 0.80F;   ///< of the shape: an edge there is a crack, no rim
-constexpr double kOverTop = 0.00006;  ///< of what is drawn on the top, metres
-constexpr double kDetail = 0.115;     ///< metres that one repeat of the fine normals covers
+constexpr float kRim = 0.5F;                ///< of the field's shape
+constexpr float kBevelDeep = 0.0011F;       ///< by which the top bends down to its rim, metres
+constexpr float kHollow = 0.0011F;          ///< depth of ice that is about to be gone, metres
+constexpr double kBulge = 0.0003;           ///< by which the shoulder stands out, metres
+constexpr float kShoulder = 0.0009F;        ///< metres under the rim's edge
+constexpr double kFoot = 0.0007;            ///< by which sides draw in down to the foot, metres
+constexpr int kBlock = 16, kLeastBlock = 4; ///< squares of level ice that are drawn as one, along a side
+constexpr double kCrackWide = 0.0004;       ///< of its dark half, metres
+constexpr double kCrackRim = 0.00035;       ///< of its bright rim, metres
+constexpr float kDeepInIce = 0.80F;         ///< of the shape: an edge there is a crack, no rim
+constexpr double kOverTop = 0.00006;        ///< of what is drawn on the top, metres
+constexpr double kDetail = 0.115;           ///< metres that one repeat of the fine normals covers
 constexpr std::uint32_t kNone = 0xffffffff;
 
 float heightOf(float shape, float thickness, float lower) {
@@ -45,7 +45,7 @@ public:
         for (auto& edges : crossings_) edges.assign(heights_.size(), kNone);
         for (auto& edges : walls_) edges.assign(heights_.size(), kNone);
         for (int j = 0; j + 1 < field.size.y; j += kBlock)
-            for (int i = 0; i + 1 < field.size.x; i += kBlock) addBlock(i, j);
+            for (int i = 0; i + 1 < field.size.x; i += kBlock) addBlock(i, j, kBlock);
     }
 
     Primitive top, rim;
@@ -57,9 +57,15 @@ private:
         bool leaves = false;  ///< the outline of the square goes out of the ice here
     };
 
-    void addBlock(int i, int j) {
-        const int right = std::min(i + kBlock, field_.size.x - 1), far = std::min(j + kBlock, field_.size.y - 1);
+    void addBlock(int i, int j, int side) {
+        const int right = std::min(i + side, field_.size.x - 1), far = std::min(j + side, field_.size.y - 1);
+        if (right <= i || far <= j) return;
         if (isLevel(i, j, right, far)) return addLevel(i, j, right, far);
+        if (side > kLeastBlock) {
+            for (const int z : {j, j + side / 2})
+                for (const int x : {i, i + side / 2}) addBlock(x, z, side / 2);
+            return;
+        }
         for (int z = j; z < far; ++z)
             for (int x = i; x < right; ++x) addSquare(x, z);
     }
@@ -251,8 +257,7 @@ const std::vector<Material>& iceMaterials() {
         rim.color = glm::vec3(1.0F);
         rim.colorTexture.image = kRimPicture;
         rim.colorTexture.tile = glm::vec2(1.0F);
-        rim.roughness = 0.30F;
-        rim.reflection = 0.08F;
+        rim.roughness = 0.40F;
         rim.emission = {0.20F, 0.60F, 0.80F};
         rim.emissionStrength = 0.16F;
         return std::vector{top, rim, crackMaterial("Crack", {0.14F, 0.42F, 0.55F}, 0.04F),

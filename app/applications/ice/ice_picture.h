@@ -21,7 +21,7 @@ public:
     [[nodiscard]] const std::shared_ptr<const Image>& image();
 
     /// Metres of a pixel.
-    static constexpr double kPixel = 0.0004;
+    static constexpr double kPixel = 0.0005;
     [[nodiscard]] static glm::dvec2 placeOf(int x, int y) noexcept;
 
 private:

@@ -21,9 +21,9 @@ namespace {
 // Assets that are in memory alone.
 constexpr const char *kBedModel = "ice pond", *kMeltwaterModel = "ice meltwater", *kRingModel = "ice ring";
 constexpr int kKoiPictures = 6;
-constexpr double kMeltEvery = 0.06, kFrostEvery = 0.05; ///< seconds between two models of a floe that changes
-constexpr double kRingSide = 0.0065;                    ///< of a drop's ring in the end, metres
-constexpr double kKeepsDry = 0.75;                      ///< of what ice stands over the water
+constexpr double kMeltModelEvery = 0.10, kFrostModelEvery = 0.07; ///< seconds between two models of a floe that changes
+constexpr double kRingSide = 0.0065;                              ///< of a drop's ring in the end, metres
+constexpr double kKeepsDry = 0.75;                                ///< of what ice stands over the water
 constexpr double kLetsGo = 0.4;         ///< seconds in which water takes its slope again, by a factor of e
 constexpr double kOverWater = 0.0004;   ///< metres
 constexpr double kWarmthHeight = 0.035; ///< of its light over the ice, metres
@@ -192,7 +192,7 @@ void Pond::updateShapes(const IceCover& ice, double seconds) {
         shape.age += seconds;
         const bool isNew = shape.model.empty() || ice.freezing() != shape.grows;
         const bool changes = shape.version != floe.version || shape.grows;
-        if (isNew || (changes && shape.age > (shape.grows ? kFrostEvery : kMeltEvery))) {
+        if (isNew || (changes && shape.age > (shape.grows ? kFrostModelEvery : kMeltModelEvery))) {
             const bool first = shape.model.empty();
             const FloeField before = std::exchange(shape.field, fieldOf(ice, floe));
             shape.version = floe.version;
