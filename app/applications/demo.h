@@ -5,6 +5,7 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -34,6 +35,14 @@ struct DemoOption {
 };
 using DemoTold = std::map<std::string, std::string>; ///< texts by the names of options
 
+/// What has come anew of an option while its application runs: a later forecast.
+struct DemoNews {
+    std::string text; ///< empty: none has come, and what the application has is so old
+    double age = 0.0; ///< seconds
+};
+/// What has come anew of an option since this was asked last; never waits.
+using DemoFeed = std::function<std::optional<DemoNews>(const std::string& option)>;
+
 /// What an application begins with.
 struct ProgramStart {
     std::uint64_t seed = 0;     ///< of its chance: the same seed and inputs give the same show
@@ -42,6 +51,7 @@ struct ProgramStart {
     std::string keptIn = {};    ///< the file that held it, for messages
     /// Takes what there is to say of the start: what of a map could not be shown.
     std::function<void(const std::string&)> note = [](const std::string&) {};
+    DemoFeed feed = {}; ///< what comes while it runs; empty: nothing does
 };
 
 /// Of a demonstration that shows one thing.

@@ -24,6 +24,7 @@ struct ProgramWish {
     std::uint64_t seed = 0;
     DemoTold told = {};
     std::filesystem::path kept = {}; ///< file of its keepsake, which need not exist; empty: it remembers nothing
+    DemoFeed feed = {};              ///< as ProgramStart
 };
 
 /// Begins the program of a demonstration; null for one that goes by time alone. What was kept and is damaged is moved

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cerrno>
+#include <cmath>
 #include <cstring>
 #include <filesystem>
 #include <iostream>
@@ -59,7 +60,11 @@ void fetchForecast(DemoTold& told) {
     char name[] = "lumorph";
     char* words[] = {name, nullptr};
     const QCoreApplication application(count, words); // sockets need it
-    weather->second = fetchedForecast(weather->second).string();
+    const CachedForecast forecast = fetchedForecast(weather->second);
+    if (!forecast.problem.empty())
+        std::cerr << "lumorph: " << forecast.problem << "; the forecast of " << std::lround(forecast.age / 60.0)
+                  << " minutes ago shows\n";
+    weather->second = forecast.file.string();
 }
 
 CLI::App* addNew(CLI::App& demo) {

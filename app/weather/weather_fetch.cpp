@@ -1,11 +1,16 @@
 #include "app/weather/weather_fetch.h"
 
+#include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <memory>
 #include <span>
 #include <system_error>
 
+#include <QCryptographicHash>
 #include <QEventLoop>
+#include <QJsonDocument>
+#include <QJsonObject>
 #include <QNetworkAccessManager>
 #include <QNetworkReply>
 #include <QNetworkRequest>
@@ -20,6 +25,7 @@ namespace lumorph {
 namespace {
 
 constexpr qint64 kMostBytes = qint64{16} << 20;
+constexpr std::chrono::milliseconds kStopEvery{50};
 constexpr const char* kWaitRemedy = "look whether the network is there, or give a file";
 
 QUrl urlOf(const std::string& address) {
@@ -30,7 +36,7 @@ QUrl urlOf(const std::string& address) {
 }
 
 /// Lets the reply come; aborts it where it is too large or its bytes come too slowly. Whether it was for its size.
-bool waitFor(QNetworkReply& reply, double seconds) {
+bool waitFor(QNetworkReply& reply, double seconds, const std::stop_token& stop) {
     bool tooLarge = false;
     QEventLoop loop;
     QTimer silence;
@@ -44,21 +50,42 @@ bool waitFor(QNetworkReply& reply, double seconds) {
         reply.abort();
     });
     QObject::connect(&reply, &QNetworkReply::finished, &loop, &QEventLoop::quit);
+    QTimer asks;
+    QObject::connect(&asks, &QTimer::timeout, &reply, [&] {
+        if (stop.stop_requested()) reply.abort();
+    });
+    if (stop.stop_possible()) asks.start(kStopEvery);
     silence.start();
     if (!reply.isFinished()) loop.exec();
     return tooLarge;
+}
+
+/// Where the forecast of an address is kept: names of files have no room for the address itself.
+std::filesystem::path cacheOf(const std::string& address) {
+    const QByteArray bytes = QByteArray::fromStdString(address);
+    const QByteArray name = QCryptographicHash::hash(bytes, QCryptographicHash::Sha256).toHex().left(16);
+    const std::filesystem::path cache =
+        QStandardPaths::writableLocation(QStandardPaths::GenericCacheLocation).toStdString();
+    return cache / "lumorph" / ("forecast-" + name.toStdString() + ".json");
+}
+
+/// Whether an answer is an error that the service explains.
+bool isRefusal(const std::string& answer) {
+    const QJsonDocument json = QJsonDocument::fromJson(QByteArray::fromStdString(answer));
+    return !json.isObject() || json.object().value("error").toBool();
 }
 
 } // namespace
 
 bool isWebAddress(const std::string& text) { return text.starts_with("http://") || text.starts_with("https://"); }
 
-std::string fetchWeather(const std::string& address, double seconds) {
+std::string fetchWeather(const std::string& address, double seconds, const std::stop_token& stop) {
     QNetworkRequest request(urlOf(address));
     request.setHeader(QNetworkRequest::UserAgentHeader, QStringLiteral("Lumorph"));
     QNetworkAccessManager manager;
     const std::unique_ptr<QNetworkReply> reply(manager.get(request));
-    if (waitFor(*reply, seconds)) throw DataError(address, "its answer is larger than 16 MiB", "ask for fewer days");
+    if (waitFor(*reply, seconds, stop))
+        throw DataError(address, "its answer is larger than 16 MiB", "ask for fewer days");
     const int status = reply->attribute(QNetworkRequest::HttpStatusCodeAttribute).toInt();
     const QByteArray body = reply->isOpen() ? reply->readAll() : QByteArray(); // one that was aborted is closed
     if (status >= 400 && status < 500 && body.trimmed().startsWith('{')) return body.toStdString();
@@ -71,15 +98,33 @@ std::string fetchWeather(const std::string& address, double seconds) {
     return body.toStdString();
 }
 
-std::filesystem::path fetchedForecast(const std::string& address) {
-    const std::string answer = fetchWeather(address);
-    const std::filesystem::path cache =
-        QStandardPaths::writableLocation(QStandardPaths::GenericCacheLocation).toStdString();
-    const std::filesystem::path file = cache / "lumorph" / "forecast.json";
+std::filesystem::path keepForecast(const std::string& address, const std::string& answer) {
+    const std::filesystem::path file = cacheOf(address);
     std::error_code failed; // the writer names it
+    if (isRefusal(answer) && std::filesystem::exists(file, failed)) return file;
     std::filesystem::create_directories(file.parent_path(), failed);
     writeFileAtomically(file, std::as_bytes(std::span(answer)));
     return file;
+}
+
+CachedForecast fetchedForecast(const std::string& address, double seconds) {
+    try {
+        const std::string answer = fetchWeather(address, seconds);
+        // The service's own reason says more than an old forecast.
+        if (!isRefusal(answer)) return {keepForecast(address, answer), 0.0, {}};
+        const std::filesystem::path refused = cacheOf(address + " refused");
+        std::error_code failed; // the writer names it
+        std::filesystem::create_directories(refused.parent_path(), failed);
+        writeFileAtomically(refused, std::as_bytes(std::span(answer)));
+        return {refused, 0.0, {}};
+    } catch (const DeviceError& error) {
+        const std::filesystem::path file = cacheOf(address);
+        std::error_code failed;
+        const auto written = std::filesystem::last_write_time(file, failed);
+        if (failed) throw;
+        const auto age = std::filesystem::file_time_type::clock::now() - written;
+        return {file, std::max(0.0, std::chrono::duration<double>(age).count()), error.what()};
+    }
 }
 
 } // namespace lumorph

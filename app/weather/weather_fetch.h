@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <stop_token>
 #include <string>
 
 namespace lumorph {
@@ -8,14 +9,28 @@ namespace lumorph {
 /// Whether a text is an address of the web, http or https.
 [[nodiscard]] bool isWebAddress(const std::string& text);
 
-/// What a server answers to a GET, at most 16 MiB; waits for it, no longer than `seconds` without a byte. Follows
+/// What a server answers to a GET, at most 16 MiB; waits for it, no longer than `seconds` without a byte, nor after
+/// `stop`. Follows
 /// redirections, but none from https to http. Needs a QCoreApplication. Throws InvalidInput for what is no address,
 /// DeviceError where no answer comes or the server refuses; an error that the server explains (a status of 400 to 499
 /// with a JSON body, as Open-Meteo's) is returned, for its reader knows more.
-[[nodiscard]] std::string fetchWeather(const std::string& address, double seconds = 15.0);
+[[nodiscard]] std::string fetchWeather(const std::string& address, double seconds = 15.0,
+                                       const std::stop_token& stop = {});
 
-/// Fetches a forecast as `fetchWeather` does into a file of the user's cache, the same each time, and gives its place.
-/// Throws DeviceError where that cannot be written.
-[[nodiscard]] std::filesystem::path fetchedForecast(const std::string& address);
+/// A forecast in a file of the user's cache.
+struct CachedForecast {
+    std::filesystem::path file;
+    double age = 0.0;    ///< seconds since it came
+    std::string problem; ///< why it is not a new one; empty: it is
+};
+
+/// Fetches a forecast as `fetchWeather` does into a file of the user's cache, for each address the same. Where none
+/// comes, the one that came last from there is given. Throws as fetchWeather where there is none either, and
+/// DeviceError where it cannot be written.
+[[nodiscard]] CachedForecast fetchedForecast(const std::string& address, double seconds = 15.0);
+
+/// Writes what has come where `fetchedForecast` looks for it. An answer that is an error of the service replaces none
+/// that is a forecast. Throws DeviceError.
+std::filesystem::path keepForecast(const std::string& address, const std::string& answer);
 
 } // namespace lumorph

@@ -13,8 +13,12 @@ namespace lumorph::ambient {
 namespace {
 
 constexpr double kCloudHeight = 0.065;         ///< metres
-constexpr glm::dvec2 kCloudRoom{0.235, 0.120}; ///< metres in x and z; who leaves it comes back on the other side
-constexpr double kCloudsBefore = 0.024;        ///< metres that it lies nearer: no cloud hides the hours to come
+constexpr glm::dvec2 kCloudRoom{0.235, 0.060}; ///< metres in x and z; who leaves it comes back on the other side
+constexpr double kCloudsBefore = 0.046;        ///< metres that it lies nearer: no cloud hides the hours to come
+/// Fog lies in the sea's hollow and rises from there over the land; its sides fade within the device's outline.
+constexpr glm::vec2 kFogSides{0.206F, 0.130F};
+constexpr float kFogBefore = 0.008F;                                           ///< metres that it lies nearer, likewise
+constexpr double kFogFloor = 0.026, kThinFogTop = 0.042, kThickFogTop = 0.058; ///< heights, metres
 constexpr double kFallRoom = 0.028; ///< metres through which rain and snow fall: below the reach of the tablet's flaps
 constexpr float kRainLean = 0.30F;  ///< tangent by which streaks lean
 constexpr double kRainSpeed = 0.17, kFlakeSpeed = 0.016; ///< metres a second
@@ -85,14 +89,17 @@ void showFog(Scene& scene, const View& view) {
         item.opacity = static_cast<float>(thick * bank.share);
         fog.color = tone;
         fog.drift = glm::vec2(bank.drift);
+        const double top = std::lerp(kThinFogTop, kThickFogTop, thick * bank.share);
+        fog.size.y = static_cast<float>(top - kFogFloor);
+        item.position.y = static_cast<float>(0.5 * (top + kFogFloor));
     }
 }
 
 void addFog(Scene& scene) {
     for (int k = 0; k < kFogs; ++k) {
-        SceneItem item =
-            demoItem(kFirstFog + k, "Fog", FogItem{{0.25F, 0.050F, 0.185F}, 42.0, glm::vec3(0.9F), 0.075, {}});
-        item.position.y = 0.052F + 0.006F * static_cast<float>(k);
+        SceneItem item = demoItem(kFirstFog + k, "Fog",
+                                  FogItem{{kFogSides.x, 0.02F, kFogSides.y}, 80.0, glm::vec3(0.9F), 0.050, {}});
+        item.position.z = kFogBefore;
         item.visible = false;
         scene.items.push_back(std::move(item));
     }

@@ -1,15 +1,19 @@
 #include "app/applications/ambient/ambient.h"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <numbers>
 #include <string>
 #include <utility>
 
 #include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
+#include <glm/vec4.hpp>
 
 #include "app/applications/ambient/caption.h"
 #include "app/applications/ambient/simulated_year.h"
+#include "app/applications/ambient/weather_file.h"
 #include "app/applications/demo_items.h"
 #include "core/base/error.h"
 #include "core/motion/causal_split.h"
@@ -64,8 +68,10 @@ AmbientProgram::AmbientProgram(std::uint64_t seed, AmbientSettings settings)
       land_(landGrid()), chance_(seed) {
     const std::vector<double> days = notableDays(*settings_.weather, settings_.place);
     const double begin =
-        settings_.begin.value_or(std::max(settings_.weather->begin(), days.front() + 3600.0 * kFirstHour));
-    clock_.emplace(settings_.place, days, begin, settings_.daySeconds);
+        settings_.now
+            ? settings_.now()
+            : settings_.begin.value_or(std::max(settings_.weather->begin(), days.front() + 3600.0 * kFirstHour));
+    clock_.emplace(settings_.place, days, begin, settings_.daySeconds, settings_.now);
     view_.place = settings_.place;
     view_.sea = {settings_.weather->at(begin).windSpeed, {1.0, 0.0}};
     view_.sea.towards = onDevice(settings_.place, settings_.weather->at(begin).windFrom + std::numbers::pi);
@@ -73,11 +79,15 @@ AmbientProgram::AmbientProgram(std::uint64_t seed, AmbientSettings settings)
 
 ShowContent AmbientProgram::frame(const ShowMoment& moment) {
     visitor_.take(moment);
+    takeNews(moment.step);
     clock_->advance(moment.step, visitor_);
     view_.seconds = moment.seconds;
     view_.utc = clock_->utc();
     view_.touched.reset();
     if (visitor_.there() && visitor_.pointer()) view_.touched = *visitor_.pointer() * kHalf;
+    const glm::dvec3 eye(
+        moment.eye.value_or(moment.installation ? moment.installation->eye : glm::vec3(0.0F, 0.5F, 0.5F)));
+    view_.eye = glm::dvec3(glm::inverse(glm::dmat4(moment.worldFromDevice)) * glm::dvec4(eye, 1.0));
     lookUp();
     lookAhead();
     blow(moment.step);
@@ -98,13 +108,41 @@ ShowContent AmbientProgram::frame(const ShowMoment& moment) {
     return content;
 }
 
+/// A later forecast is read beside the show; one that cannot be read leaves the last.
+void AmbientProgram::takeNews(double step) {
+    newsAge_ += step;
+    if (!settings_.feed) return;
+    if (reading_.valid()) {
+        if (reading_.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return;
+        std::shared_ptr<const Weather> weather = reading_.get();
+        if (!weather) return;
+        settings_.weather = std::move(weather);
+        newsAge_ = 0.0;
+        day_ = 0.0, hour_ = -1.0; // all that was looked up
+        return;
+    }
+    std::optional<DemoNews> news = settings_.feed("weather");
+    if (!news) return;
+    if (news->text.empty()) {
+        newsAge_ = news->age;
+        return;
+    }
+    reading_ = std::async(std::launch::async, [text = std::move(news->text)]() -> std::shared_ptr<const Weather> {
+        try {
+            return std::make_shared<const Weather>(readForecast(text, "a later forecast").weather);
+        } catch (const Error&) {
+            return nullptr;
+        }
+    });
+}
+
 /// A new line each hour where the day goes by in minutes, else each minute.
 void AmbientProgram::say() {
     const double quantum = settings_.daySeconds < kSlowDay ? 3600.0 : 60.0;
     const double now = std::floor(view_.utc / quantum);
     if (caption_ && now == told_) return;
     told_ = now;
-    caption_ = std::make_shared<const ShowCaption>(captionOf(view_, quantum));
+    caption_ = std::make_shared<const ShowCaption>(captionOf(view_, quantum, newsAge_));
 }
 
 /// Weather, sun and moon now, and the hours of the day at hand.
@@ -137,7 +175,30 @@ void AmbientProgram::lookAhead() {
         coming.weather = settings_.weather->at(then);
         coming.day = sunAt(settings_.place, then).elevation > kHorizon;
     }
+    lookAtCards(hour != hour_);
     hour_ = hour;
+}
+
+/// Every third hour of the place's clock.
+void AmbientProgram::lookAtCards(bool anew) {
+    constexpr double kApart = 3600.0 * kCardHours;
+    const double offset = settings_.place.utcOffset;
+    const auto number = static_cast<long long>(std::floor((view_.utc + offset) / kApart)) + 1;
+    for (int k = 0; k < kCards; ++k) {
+        View::Card& card = view_.cards[static_cast<std::size_t>(k)];
+        const double then = kApart * static_cast<double>(number + k) - offset;
+        card.ahead = (then - view_.utc) / 3600.0;
+        if (!anew) continue;
+        card.slot = static_cast<int>((((number + k) % kCards) + kCards) % kCards);
+        card.day = sunAt(settings_.place, then).elevation > kHorizon;
+        card.weather = settings_.weather->at(then);
+        for (const double beside : {-3600.0, 3600.0}) {
+            const WeatherHour hour = settings_.weather->at(then + beside);
+            card.weather.rain = std::max(card.weather.rain, hour.rain);
+            card.weather.snow = std::max(card.weather.snow, hour.snow);
+            card.weather.thunder = std::max(card.weather.thunder, hour.thunder);
+        }
+    }
 }
 
 /// Light's sea goes after the wind; clouds go with it.
@@ -219,16 +280,19 @@ std::vector<ShowSound> AmbientProgram::sounds() const {
 }
 
 Demo ambientDemo() {
-    return {.name = "ambient",
-            .title = {"A coast that tells time and weather", "Eine Küste, die Zeit und Wetter zeigt"},
-            .sentence = {"The lighthouse's shadow shows the hour, the sea the wind, the horizon the next hours.",
-                         "Der Schatten des Leuchtturms zeigt die Stunde, das Meer den Wind, der Horizont, was kommt."},
-            .thumbnail = "thumbnails/ambient.png",
-            .open = bundledTablet,
-            .program = [](const ProgramStart& start, const Progress&) -> std::unique_ptr<ShowProgram> {
-                return std::make_unique<AmbientProgram>(start.seed, settingsFrom(start.told));
-            },
-            .options = settingOptions()};
+    return {
+        .name = "ambient",
+        .title = {"A coast that tells time and weather", "Eine Küste, die Zeit und Wetter zeigt"},
+        .sentence = {"The lighthouse's shadow shows the hour, the sea the wind, and cards the hours to come.",
+                     "Der Schatten des Leuchtturms zeigt die Stunde, das Meer den Wind, und Karten zeigen, was kommt."},
+        .thumbnail = "thumbnails/ambient.png",
+        .open = bundledTablet,
+        .program = [](const ProgramStart& start, const Progress&) -> std::unique_ptr<ShowProgram> {
+            AmbientSettings settings = settingsFrom(start.told);
+            settings.feed = start.feed;
+            return std::make_unique<AmbientProgram>(start.seed, std::move(settings));
+        },
+        .options = settingOptions()};
 }
 
 } // namespace lumorph::ambient

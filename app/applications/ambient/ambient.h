@@ -1,6 +1,8 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
+#include <future>
 #include <memory>
 #include <optional>
 #include <random>
@@ -22,18 +24,20 @@ struct AmbientSettings {
     std::shared_ptr<const Weather> weather; ///< empty: a simulated year
     std::optional<double> begin;            ///< UTC; empty: the morning of the first notable day
     double daySeconds = 120.0;              ///< of the show that a day takes; 86400 is the world's own time
-    double anticipation = 2.0;              ///< seconds by which light shows the sea before servos follow (R38)
+    std::function<double()> now; ///< the world's own clock, UTC, which is then shown; empty: time goes from `begin` on
+    DemoFeed feed;               ///< of later forecasts; empty: none come
+    double anticipation = 2.0;   ///< seconds by which light shows the sea before servos follow (R38)
 };
 
-/// Settings by name, as they come from outside: `weather` a file in Open-Meteo's JSON (or where it came from, with its
-/// text as `forecast`), whose place counts where none is
-/// given, `place` as `placeFrom` reads it, `begin` a local time (2026-05-17T14:00), `day` and `anticipation` seconds.
-/// Without `begin` a forecast begins with its first hour. Throws InvalidInput and DataError naming the setting.
+/// Settings by name, as they come from outside: `weather` a file in Open-Meteo's JSON, whose place counts where none is
+/// given, `place` as `placeFrom` reads it, `begin` a local time (2026-05-17T14:00), `day` and `anticipation` seconds,
+/// `clock` real or quick. Without `begin` a forecast begins with its first hour. Throws InvalidInput and DataError
+/// naming the setting.
 [[nodiscard]] AmbientSettings settingsFrom(const DemoTold& settings);
 /// What it knows.
 [[nodiscard]] std::vector<DemoOption> settingOptions();
 
-/// The ambient display: the tablet as a coast that tells time and weather without a word. Light shows all of it, and
+/// The ambient display: the tablet as a coast that tells time and weather. Light shows all of it, and
 /// servos follow the land and the long waves, a set time after light has shown how they change.
 ///
 /// Left and right (held) let time run faster and back, `key.next` goes to another day, `key.restart` back to where it
@@ -51,21 +55,27 @@ public:
     [[nodiscard]] const View& view() const noexcept { return view_; }
     /// What servos were given in it: the sea of `anticipation` seconds before.
     [[nodiscard]] const SeaState& followed() const noexcept { return followed_; }
+    /// Seconds since the forecast that shows was fetched.
+    [[nodiscard]] double forecastAge() const noexcept { return newsAge_; }
     [[nodiscard]] const Weather& weather() const noexcept { return *settings_.weather; }
     [[nodiscard]] const WorldClock& clock() const noexcept { return *clock_; }
 
 private:
     void lookUp();
     void lookAhead();
+    void lookAtCards(bool anew);
     void blow(double step);
     void slosh(const ShowMoment& moment);
     void turnFog(double step);
     void thunder(double step);
     void say();
+    void takeNews(double step);
     [[nodiscard]] HeightGrid wish(double lag) const;
     [[nodiscard]] std::vector<ShowSound> sounds() const;
 
     AmbientSettings settings_;
+    std::future<std::shared_ptr<const Weather>> reading_; ///< a later forecast
+    double newsAge_ = 0.0;                                ///< seconds since the forecast came
     Sea sea_;
     Anticipation anticipation_;
     Scenery scenery_;

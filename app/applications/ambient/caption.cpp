@@ -10,7 +10,8 @@
 namespace lumorph::ambient {
 namespace {
 
-constexpr double kWet = 0.1; ///< mm of rain, or cm of snow, an hour
+constexpr double kOldForecast = 3600.0; ///< seconds from which on its age is said
+constexpr double kWet = 0.1;            ///< mm of rain, or cm of snow, an hour
 
 Words joined(const Words& first, const char* between, const Words& second) {
     return {first.english + between + second.english,
@@ -91,9 +92,15 @@ Words comingOf(const View& view, double local) {
     return {what.english + " from " + at + ".", what.german + " ab " + at + "."};
 }
 
+Words ageOf(double seconds) {
+    const std::string hours = std::to_string(std::lround(seconds / 3600.0));
+    return {"The forecast is " + hours + (hours == "1" ? " hour old." : " hours old."),
+            "Die Vorhersage ist " + hours + (hours == "1" ? " Stunde alt." : " Stunden alt.")};
+}
+
 } // namespace
 
-ShowCaption captionOf(const View& view, double quantum) {
+ShowCaption captionOf(const View& view, double quantum, double forecastAge) {
     const double local = view.utc + view.place.utcOffset;
     const double told = quantum * std::floor(local / quantum);
     const WeatherHour& now = view.weather;
@@ -106,6 +113,7 @@ ShowCaption captionOf(const View& view, double quantum) {
     ShowCaption caption;
     caption.title = joined(dayName(told), ", ", Words(clockText(told)));
     caption.sentence = joined(joined(joined(Words(degrees), "", sky), ", ", wind), ". ", coming);
+    if (forecastAge >= kOldForecast) caption.sentence = joined(caption.sentence, " ", ageOf(forecastAge));
     return caption;
 }
 

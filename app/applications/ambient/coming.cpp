@@ -1,104 +1,101 @@
+#include "app/applications/ambient/coming.h"
+
 #include <algorithm>
 #include <cmath>
+#include <string>
 
-#include <glm/common.hpp>
-#include <glm/gtc/quaternion.hpp>
+#include <glm/geometric.hpp>
 
-#include "app/applications/ambient/forms.h"
 #include "app/applications/ambient/parts.h"
 #include "app/applications/demo_items.h"
+#include "core/base/resources.h"
 
 namespace lumorph::ambient {
 namespace {
 
-constexpr double kRowZ = -0.071, kRowY = 0.052; ///< metres: over the far rim
-constexpr double kRowLeft = -0.050, kRowRight = 0.108;
-constexpr double kMostFall = 0.020; ///< length of what falls, metres
+constexpr const char* kCardModel = "ambient card";
+constexpr double kCardHeight = Coming::kCardWidth * kCardPixels.y / kCardPixels.x;
+/// Middles of the cards that are due now and at the end, metres: where the sea is free of land, and so far from the far
+/// rim that a viewer in front sees them on the device.
+constexpr glm::dvec3 kRowFrom{0.0100, 0.0450, -0.0400}, kRowTo{0.0940, 0.0450, -0.0400};
+constexpr double kShown = 12.0;             ///< hours ahead
+constexpr double kComes = 1.5, kGoes = 1.2; ///< hours in which a card comes and goes
 
-int idOf(int hour, int part) { return kFirstComing + 3 * hour + part; }
+std::string cardPicture(int slot) { return "ambient card " + std::to_string(slot); }
 
-Primitive smallCloud() {
-    Primitive puffs;
-    addBall(puffs, {-0.55F, 0.0F, 0.0F}, {0.55F, 0.38F, 0.40F}, 12);
-    addBall(puffs, {0.05F, 0.16F, 0.0F}, {0.62F, 0.52F, 0.48F}, 12);
-    addBall(puffs, {0.62F, -0.02F, 0.0F}, {0.50F, 0.34F, 0.38F}, 12);
-    return puffs;
+std::shared_ptr<const SceneModel> sheet() {
+    const auto x = static_cast<float>(0.5 * Coming::kCardWidth), y = static_cast<float>(0.5 * kCardHeight);
+    Primitive face;
+    face.positions = {{-x, -y, 0.0F}, {x, -y, 0.0F}, {x, y, 0.0F}, {-x, y, 0.0F}};
+    face.normals.assign(4, {0.0F, 0.0F, 1.0F});
+    face.texcoords = {{0.0F, 1.0F}, {1.0F, 1.0F}, {1.0F, 0.0F}, {0.0F, 0.0F}};
+    face.triangles = {{0, 1, 2}, {0, 2, 3}};
+    return modelOf("card", {face});
 }
 
-void showLightOf(SceneItem& light, const View::Coming& hour, const glm::vec3& place, double seen) {
-    const glm::vec3 sun(1.0F, 0.66F, 0.12F), moon(0.62F, 0.70F, 0.95F);
-    const double clear = 1.0 - 0.9 * rise(0.2, 1.0, hour.weather.cloudCover);
-    const double fog = rise(300.0, 4000.0, hour.weather.visibility);
-    light.position = place;
-    light.scale = glm::vec3(static_cast<float>((hour.day ? 1.0 : 0.7) * (0.55 + 0.45 * clear)));
-    light.material.color = light.material.emission = hour.day ? sun : moon;
-    light.material.emissionStrength = static_cast<float>((0.4 + 0.9 * clear) * (0.3 + 0.7 * fog));
-    light.opacity = static_cast<float>(0.49 * seen); // so that it throws no shadow on the sea
-}
-
-void showCloudOf(SceneItem& cloud, const View& view, const View::Coming& hour, const glm::vec3& place, double seen) {
-    const double wet = rise(0.1, 5.0, hour.weather.rain + hour.weather.snow);
-    const double cover = std::max(rise(0.12, 0.9, hour.weather.cloudCover), 0.6 * wet);
-    cloud.visible = cover > 0.05;
-    cloud.position = place + glm::vec3(0.0F, -0.0022F, 0.0045F);
-    cloud.scale = glm::vec3(static_cast<float>(0.0025 + 0.0052 * cover));
-    cloud.material.color =
-        glm::mix(glm::vec3(0.93F, 0.95F, 0.98F), glm::vec3(0.34F, 0.36F, 0.42F), static_cast<float>(wet));
-    // A thunderstorm to come flickers.
-    const double flicker =
-        std::max(0.0, std::sin(9.0 * view.seconds + 5.0 * hour.ahead) * std::sin(2.3 * view.seconds));
-    cloud.material.emission = {0.55F, 0.40F, 1.0F};
-    cloud.material.emissionStrength = static_cast<float>(0.06 + hour.weather.thunder * (0.2 + 1.4 * flicker));
-    cloud.opacity = static_cast<float>(seen);
-}
-
-void showFallOf(SceneItem& fall, const View& view, const View::Coming& hour, const glm::vec3& place, double seen) {
-    const bool snows = hour.weather.snow > hour.weather.rain;
-    const double amount = std::sqrt(rise(0.0, snows ? 2.5 : 7.0, snows ? hour.weather.snow : hour.weather.rain));
-    fall.visible = amount > 0.05;
-    const double length = std::max(0.002, kMostFall * amount);
-    // It slants with the wind of its hour, as seen from the front.
-    const double blows = onDevice(view.place, hour.weather.windFrom + 3.14159).x * hour.weather.windSpeed;
-    const double lean = std::clamp(0.05 * blows, -0.8, 0.8);
-    fall.rotation = glm::angleAxis(static_cast<float>(lean), glm::vec3(0.0F, 0.0F, 1.0F));
-    fall.position =
-        place + glm::vec3(glm::dvec3(0.5 * length * std::sin(lean), -0.004 - 0.5 * length * std::cos(lean), 0.0045));
-    fall.scale = {1.0F, static_cast<float>(length), 1.0F};
-    fall.material.color = fall.material.emission =
-        snows ? glm::vec3(0.97F, 0.98F, 1.0F) : glm::vec3(0.20F, 0.50F, 0.95F);
-    fall.opacity = static_cast<float>(0.8 * seen);
+/// Upright, its picture towards an eye.
+glm::quat facing(const glm::dvec3& from, const glm::dvec3& eye) {
+    const glm::dvec3 way = eye - from;
+    const glm::dvec3 z = glm::length(way) > 1e-9 ? glm::normalize(way) : glm::dvec3(0.0, 0.0, 1.0);
+    const glm::dvec3 beside = glm::cross(glm::dvec3(0.0, 1.0, 0.0), z);
+    const glm::dvec3 x = glm::length(beside) > 1e-6 ? glm::normalize(beside) : glm::dvec3(1.0, 0.0, 0.0);
+    return glm::quat(glm::normalize(glm::quat_cast(glm::dmat3(x, glm::cross(z, x), z))));
 }
 
 } // namespace
 
-void addComing(Scene& scene, SceneAssets& assets) {
-    assets.models.emplace("ambient small cloud", modelOf("small cloud", {smallCloud()}));
-    for (int k = 0; k < kComingHours; ++k) {
-        SceneItem light = demoItem(idOf(k, 0), "Hour to come", ShapeItem{ShapeItem::Form::sphere, glm::vec3(0.0088F)});
-        light.material = shining("Sky", {1.0F, 0.8F, 0.3F}, 1.0F);
-        scene.items.push_back(std::move(light));
-        SceneItem cloud =
-            demoItem(idOf(k, 1), "Its clouds", MeshItem{.model = "ambient small cloud", .ownMaterials = false});
-        cloud.material = plain("Cloud to come", glm::vec3(0.9F), 1.0F);
-        scene.items.push_back(std::move(cloud));
-        SceneItem fall = demoItem(idOf(k, 2), "Its rain", ShapeItem{ShapeItem::Form::box, {0.0030F, 1.0F, 0.0008F}});
-        fall.material = shining("Fall", {0.2F, 0.5F, 0.95F}, 0.35F);
-        scene.items.push_back(std::move(fall));
+ForecastCard cardOf(const View& view, const View::Card& card) noexcept {
+    const double local = view.utc + 3600.0 * card.ahead + view.place.utcOffset;
+    const auto hours = static_cast<long long>(std::lround(local / 3600.0));
+    return {signOf(card.weather, card.day), static_cast<int>(((hours % 24) + 24) % 24),
+            static_cast<int>(std::lround(card.weather.temperature))};
+}
+
+Coming::Coming() : font_(resourceFile("fonts/Inter-SemiBold.otf")) {}
+
+void Coming::addTo(Scene& scene, SceneAssets& assets) {
+    assets.models.emplace(kCardModel, sheet());
+    for (int slot = 0; slot < kCards; ++slot) {
+        SceneItem card =
+            demoItem(kFirstCard + slot, "Hours to come", MeshItem{.model = kCardModel, .ownMaterials = false});
+        card.material = plain("Card", glm::vec3(1.0F));
+        card.material.colorTexture.image = cardPicture(slot);
+        card.material.colorTexture.tile = glm::vec2(1.0F);
+        card.material.alpha = Material::Alpha::blend;
+        card.material.unlit = true;
+        card.visible = false;
+        scene.items.push_back(std::move(card));
     }
 }
 
-void showComing(Scene& scene, const View& view) {
-    for (int k = 0; k < kComingHours; ++k) {
-        const View::Coming& hour = view.coming[static_cast<std::size_t>(k)];
-        const double share = hour.ahead / kComingHours;
-        const glm::vec3 place(glm::dvec3(std::lerp(kRowLeft, kRowRight, share), kRowY, kRowZ));
-        // The nearest goes up in the present, the farthest comes out of the haze.
-        const double seen =
-            rise(0.0, 0.6, hour.ahead) * (1.0 - rise(kComingHours - 0.7, kComingHours + 0.0, hour.ahead));
-        for (int part = 0; part < 3; ++part) itemOf(scene, idOf(k, part)).visible = true;
-        showLightOf(itemOf(scene, idOf(k, 0)), hour, place, seen);
-        showCloudOf(itemOf(scene, idOf(k, 1)), view, hour, place, seen);
-        showFallOf(itemOf(scene, idOf(k, 2)), view, hour, place, seen);
+bool Coming::update(const View& view) {
+    bool changed = false;
+    for (const View::Card& card : view.cards) {
+        Painted& painted = painted_[static_cast<std::size_t>(card.slot)];
+        const ForecastCard says = cardOf(view, card);
+        if (painted.says == says) continue;
+        painted.says = says;
+        painted.picture = std::make_shared<const Image>(pictureOf(says, font_));
+        changed = true;
+    }
+    return changed;
+}
+
+void Coming::pictures(SceneAssets& assets) const {
+    for (int slot = 0; slot < kCards; ++slot)
+        if (const auto& picture = painted_[static_cast<std::size_t>(slot)].picture)
+            assets.images[cardPicture(slot)] = picture;
+}
+
+void Coming::show(Scene& scene, const View& view) const {
+    for (const View::Card& card : view.cards) {
+        SceneItem& item = itemOf(scene, kFirstCard + card.slot);
+        const glm::dvec3 place = glm::mix(kRowFrom, kRowTo, card.ahead / kShown);
+        const double seen = rise(0.0, kGoes, card.ahead) * (1.0 - rise(kShown, kShown + kComes, card.ahead));
+        item.visible = seen > 0.01;
+        item.position = place;
+        item.rotation = facing(place, view.eye);
+        item.opacity = static_cast<float>(seen);
     }
 }
 

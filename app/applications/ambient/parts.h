@@ -24,10 +24,6 @@ void showWater(Scene& scene, const View& view);
 void addAir(Scene& scene, SceneAssets& assets);
 void showAir(Scene& scene, const View& view);
 
-/// The next hours, as they come along the far rim towards now.
-void addComing(Scene& scene, SceneAssets& assets);
-void showComing(Scene& scene, const View& view);
-
 /// Of one known to be there.
 [[nodiscard]] SceneItem& itemOf(Scene& scene, int id);
 /// A model that is in memory alone, ready to be placed.

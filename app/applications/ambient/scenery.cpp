@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "app/applications/ambient/coming.h"
 #include "app/applications/ambient/parts.h"
 #include "app/applications/demo_items.h"
 
@@ -45,7 +46,9 @@ glm::dvec2 stonePlace(const Place& place, const SkyPosition& sun) noexcept {
     return kGnomon - kDialRadius * onDevice(place, sun.azimuth);
 }
 
-Scenery::Scenery() : still_(defaultScene()) {
+Scenery::~Scenery() = default;
+
+Scenery::Scenery() : still_(defaultScene()), coming_(std::make_unique<Coming>()) {
     still_.device.show = DeviceSkin::Show::content;
     still_.items.clear();
     SceneAssets assets;
@@ -53,20 +56,25 @@ Scenery::Scenery() : still_(defaultScene()) {
     addShore(still_, assets);
     addWater(still_, assets);
     addAir(still_, assets);
-    addComing(still_, assets);
     // What materials of the library and the table name is read from the resources beside what is in memory alone.
     const std::shared_ptr<const SceneAssets> read = loadSceneAssets(still_, {}, &assets);
     for (const auto& [name, image] : read->images) assets.images.emplace(name, image);
+    Coming::addTo(still_, assets); // whose pictures come later
     assets_ = std::make_shared<const SceneAssets>(std::move(assets));
 }
 
-std::shared_ptr<const Scene> Scenery::show(const View& view) const {
+std::shared_ptr<const Scene> Scenery::show(const View& view) {
+    if (coming_->update(view)) {
+        auto changed = std::make_shared<SceneAssets>(*assets_);
+        coming_->pictures(*changed);
+        assets_ = std::move(changed);
+    }
     auto scene = std::make_shared<Scene>(still_);
     showDaylight(*scene, view);
     showShore(*scene, view);
     showWater(*scene, view);
     showAir(*scene, view);
-    showComing(*scene, view);
+    coming_->show(*scene, view);
     return scene;
 }
 

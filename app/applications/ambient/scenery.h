@@ -17,7 +17,7 @@
 
 namespace lumorph::ambient {
 
-inline constexpr int kComingHours = 12;
+inline constexpr int kComingHours = 12, kCards = 5, kCardHours = 3;
 
 /// What is to be seen at a moment: all that the landscape depends on.
 struct View {
@@ -48,7 +48,16 @@ struct View {
         double ahead = 0.0; ///< hours from now
     };
     std::array<Coming, kComingHours> coming{}; ///< the next whole hours
-    std::optional<glm::dvec2> touched;         ///< where a visitor points, x and z of the device
+    /// A time to come that a card tells of: every third hour of the clock.
+    struct Card {
+        WeatherHour weather; ///< then; what falls is the most of the three hours about it
+        bool day = true;
+        double ahead = 0.0; ///< hours from now
+        int slot = 0;       ///< the same as long as it is to come, below kCards
+    };
+    std::array<Card, kCards> cards{};  ///< the nearest first
+    glm::dvec3 eye{0.0, 0.5, 0.5};     ///< of who looks, device metres
+    std::optional<glm::dvec2> touched; ///< where a visitor points, x and z of the device
 };
 
 /// Items of the scene.
@@ -76,7 +85,7 @@ enum SceneryItem : int {
     kFirstRing = 80,
     kFirstRain = 110,
     kFirstFlakes = 120,
-    kFirstComing = 130, ///< three each: light, cloud, fall
+    kFirstCard = 130,
 };
 inline constexpr int kFogs = 2, kClouds = 7, kStones = 24, kRings = 22, kRainLayers = 4, kFlakeLayers = 5;
 
@@ -90,16 +99,20 @@ inline constexpr double kDialRadius = 0.0235; ///< of the ring of stones, metres
 /// The stone of an hour at which the sun stands there: where the shadow falls, or would at night.
 [[nodiscard]] glm::dvec2 stonePlace(const Place& place, const SkyPosition& sun) noexcept;
 
+class Coming;
+
 /// The landscape as light shows it: what stands still is made once, and `show` puts in what moves.
 class Scenery {
 public:
     Scenery();
+    ~Scenery();
 
     [[nodiscard]] const std::shared_ptr<const SceneAssets>& assets() const noexcept { return assets_; }
-    [[nodiscard]] std::shared_ptr<const Scene> show(const View& view) const;
+    [[nodiscard]] std::shared_ptr<const Scene> show(const View& view);
 
 private:
     Scene still_;
+    std::unique_ptr<Coming> coming_;
     std::shared_ptr<const SceneAssets> assets_;
 };
 

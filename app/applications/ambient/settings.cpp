@@ -1,4 +1,5 @@
 #include <charconv>
+#include <chrono>
 #include <string>
 
 #include "app/applications/ambient/ambient.h"
@@ -22,30 +23,45 @@ double localBegin(const std::string& text, const Place& place) {
     return *time;
 }
 
+void takeClock(AmbientSettings& settings, const std::string& text) {
+    if (text != "real" && text != "quick")
+        throw InvalidInput("clock", "'" + text.substr(0, 40) + "' is no clock", "say real or quick");
+    if (text == "quick") return;
+    settings.daySeconds = 86'400.0;
+    settings.now = [] {
+        return std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
+    };
+}
+
 } // namespace
 
 std::vector<DemoOption> settingOptions() {
-    return {{"weather",
-             "Of ambient: a forecast in Open-Meteo's JSON, a file or an http(s) address",
-             {"Weather", "Wetter"},
-             {"file or address of a forecast (Open-Meteo's JSON)", "Datei oder Adresse (JSON von Open-Meteo)"},
-             true},
-            {"place",
-             "Of ambient: LAT,LON or LAT,LON,HOURS ahead of UTC",
-             {"Place", "Ort"},
-             {"latitude,longitude,hours ahead of UTC: 48.1,11.6,2", "Breite,Länge,Stunden vor UTC: 48.1,11.6,2"}},
-            {"begin",
-             "Of ambient: its first time, 2026-05-17T14:00 at the place",
-             {"First time", "Erste Zeit"},
-             {"2026-05-17T14:00", "2026-05-17T14:00"}},
-            {"day",
-             "Of ambient: seconds that a day takes; 86400 is the world's own time",
-             {"Length of a day", "Dauer eines Tages"},
-             {"seconds; 86400 is the world's own time", "Sekunden; 86400 ist die wirkliche Zeit"}},
-            {"anticipation",
-             "Of ambient: seconds by which light is ahead of the servos",
-             {"Light ahead of servos", "Licht vor den Servos"},
-             {"seconds", "Sekunden"}}};
+    return {
+        {"weather",
+         "Of ambient: a forecast in Open-Meteo's JSON, a file or an http(s) address",
+         {"Weather", "Wetter"},
+         {"file or address of a forecast (Open-Meteo's JSON)", "Datei oder Adresse (JSON von Open-Meteo)"},
+         true},
+        {"place",
+         "Of ambient: LAT,LON or LAT,LON,HOURS ahead of UTC",
+         {"Place", "Ort"},
+         {"latitude,longitude,hours ahead of UTC: 48.1,11.6,2", "Breite,Länge,Stunden vor UTC: 48.1,11.6,2"}},
+        {"begin",
+         "Of ambient: its first time, 2026-05-17T14:00 at the place",
+         {"First time", "Erste Zeit"},
+         {"2026-05-17T14:00", "2026-05-17T14:00"}},
+        {"day",
+         "Of ambient: seconds that a day takes; 86400 is the world's own time",
+         {"Length of a day", "Dauer eines Tages"},
+         {"seconds; 86400 is the world's own time", "Sekunden; 86400 ist die wirkliche Zeit"}},
+        {"clock",
+         "Of ambient: 'real' for the room's own time, 'quick' for a day in minutes",
+         {"Clock", "Uhr"},
+         {"real: the room's own time; quick: a day in minutes", "real: die wirkliche Zeit; quick: ein Tag in Minuten"}},
+        {"anticipation",
+         "Of ambient: seconds by which light is ahead of the servos",
+         {"Light ahead of servos", "Licht vor den Servos"},
+         {"seconds", "Sekunden"}}};
 }
 
 AmbientSettings settingsFrom(const DemoTold& settings) {
@@ -63,11 +79,13 @@ AmbientSettings settingsFrom(const DemoTold& settings) {
             read.begin = localBegin(text, read.place);
         else if (name == "day")
             read.daySeconds = secondsOf(name, text);
+        else if (name == "clock")
+            takeClock(read, text);
         else if (name == "anticipation")
             read.anticipation = secondsOf(name, text);
         else if (name != "weather" && name != "place")
             throw InvalidInput("setting '" + name.substr(0, 40) + "'", "the coast has none of this name",
-                               "use weather, place, begin, day or anticipation");
+                               "use weather, place, begin, day, clock or anticipation");
     }
     return read;
 }

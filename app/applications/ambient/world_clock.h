@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <vector>
 
 #include "app/applications/ambient/place.h"
@@ -15,7 +16,9 @@ public:
     static constexpr double kScrub = 8.0; ///< times as fast while a visitor holds left or right
 
     /// `days` are local midnights, at least one; `daySeconds` is how long a day takes, 86400 for the world's own time.
-    WorldClock(const Place& place, std::vector<double> days, double begin, double daySeconds);
+    /// With `now`, UTC, it shows that time and leaves it only while a visitor is there.
+    WorldClock(const Place& place, std::vector<double> days, double begin, double daySeconds,
+               std::function<double()> now = {});
 
     /// A step of the show's time, seconds.
     void advance(double step, const Visitor& visitor);
@@ -25,9 +28,11 @@ public:
 
 private:
     void goToNextDay(double hour);
+    void returnToNow(double step);
 
     Place place_;
     std::vector<double> days_;
+    std::function<double()> now_;
     double begin_, utc_;
     double usualSpeed_, speed_;
     std::size_t day_ = 0; ///< of `days_`: the one that was gone to last

@@ -77,7 +77,7 @@ std::vector<ShowSound> soundsOf(const std::vector<IceEvent>& events) {
 } // namespace
 
 IceProgram::IceProgram(std::uint64_t seed)
-    : ice_(pondShore(), seed), school_(ice_.shore(), static_cast<int>(kFish), seed), pond_(ice_.shore(), kFish) {}
+    : ice_(pondShore(), seed), school_(ice_.shore(), static_cast<int>(kFish), seed), pond_(ice_.shore(), kFish, seed) {}
 
 ShowContent IceProgram::frame(const ShowMoment& moment) {
     visitor_.take(moment);
@@ -101,7 +101,8 @@ ShowContent IceProgram::frame(const ShowMoment& moment) {
     open_ = ice_.iceArea() < kOpen * ice_.sheet().area() && !ice_.freezing() ? open_ + moment.step : 0.0;
     if (open_ > kUntilFrost) freeze();
     ShowContent content;
-    content.scene = pond_.show(ice_, school_, around_.warmths, slosh_.slope());
+    content.scene =
+        pond_.show(ice_, school_, {around_.warmths, around_.lean, around_.thaw}, moment.step, slosh_.slope());
     content.assets = pond_.assets();
     content.target = swell_.heights();
     content.following = Following::split;

@@ -30,6 +30,7 @@ public:
     [[nodiscard]] const IceCover& ice() const noexcept { return ice_; }
     [[nodiscard]] const School& school() const noexcept { return school_; }
     [[nodiscard]] const std::vector<Warmth>& warmths() const noexcept { return around_.warmths; }
+    [[nodiscard]] const Meltwater& meltwater() const noexcept { return pond_.meltwater(); }
     [[nodiscard]] bool playsItself() const noexcept { return alone_; }
 
 private:

@@ -12,15 +12,21 @@
 #include "app/applications/ice/floe_model.h"
 #include "app/applications/ice/koi_model.h"
 #include "app/applications/ice/pond_bed.h"
+#include "app/applications/ice/water_model.h"
 #include "core/scene/material_library.h"
 
 namespace lumorph::ice {
 namespace {
 
 // Assets that are in memory alone.
-constexpr const char* kBedModel = "ice pond";
+constexpr const char *kBedModel = "ice pond", *kMeltwaterModel = "ice meltwater", *kRingModel = "ice ring";
 constexpr int kKoiPictures = 6;
-constexpr double kWarmthHeight = 0.035;                   ///< of its light over the ice, metres
+constexpr double kMeltModelEvery = 0.10, kFrostModelEvery = 0.07; ///< seconds between two models of a floe that changes
+constexpr double kRingSide = 0.0065;                              ///< of a drop's ring in the end, metres
+constexpr double kKeepsDry = 0.75;                                ///< of what ice stands over the water
+constexpr double kLetsGo = 0.4;         ///< seconds in which water takes its slope again, by a factor of e
+constexpr double kOverWater = 0.0004;   ///< metres
+constexpr double kWarmthHeight = 0.035; ///< of its light over the ice, metres
 constexpr double kDeepest = 0.0042, kShallowest = 0.0082; ///< of fish, device metres
 
 std::string koiPose(int pose) { return "ice koi pose " + std::to_string(pose); }
@@ -44,6 +50,28 @@ SceneItem waterItem() {
     item.material.normalMaps[0].velocity *= 0.4F;
     item.material.normalMaps[1].velocity *= 0.4F;
     item.opacity = 0.38F;
+    return item;
+}
+
+SceneItem meltwaterItem() {
+    SceneItem item = demoItem(kMeltwaterItem, "Meltwater", MeshItem{.model = kMeltwaterModel, .ownMaterials = false});
+    item.material.name = "Meltwater";
+    item.material.color = {0.20F, 0.54F, 0.72F};
+    item.material.roughness = 0.16F;
+    item.material.reflection = 0.35F;
+    item.material.emission = {0.40F, 0.80F, 1.0F};
+    item.material.emissionStrength = 0.04F;
+    item.opacity = 0.80F;
+    item.visible = false;
+    return item;
+}
+
+SceneItem ringItem(int number) {
+    SceneItem item = demoItem(kFirstRing + number, "Ring", MeshItem{.model = kRingModel, .ownMaterials = false});
+    item.material.name = "Ring";
+    item.material.color = {0.86F, 0.97F, 1.0F};
+    item.material.roughness = 0.4F;
+    item.visible = false;
     return item;
 }
 
@@ -79,6 +107,8 @@ Scene stillScene(std::size_t fish) {
     SceneItem bed = demoItem(kBedItem, "Pond", MeshItem{.model = kBedModel});
     scene.items.push_back(std::move(bed));
     scene.items.push_back(waterItem());
+    scene.items.push_back(meltwaterItem());
+    for (int k = 0; k < static_cast<int>(Meltwater::kMostDrips); ++k) scene.items.push_back(ringItem(k));
     for (std::size_t k = 0; k < fish; ++k) scene.items.push_back(fishItem(static_cast<int>(k)));
     return scene;
 }
@@ -87,16 +117,22 @@ Scene stillScene(std::size_t fish) {
 std::shared_ptr<const SceneAssets> stillAssets(const Scene& scene, const Polygon& shore) {
     auto bed = std::make_shared<const SceneModel>(pondBed(shore));
     Scene pictured = scene;
-    std::erase_if(pictured.items, [](const SceneItem& item) { return item.id >= kFirstFish || item.id == kBedItem; });
+    std::erase_if(pictured.items,
+                  [](const SceneItem& item) { return item.id >= kMeltwaterItem || item.id == kBedItem; });
     const auto add = [&](const Material& material) {
         SceneItem item = demoItem(1000 + static_cast<int>(pictured.items.size()), material.name, ShapeItem{});
         item.material = material;
         pictured.items.push_back(std::move(item));
     };
     for (const Material& material : bed->materials) add(material);
-    for (const Material& material : iceMaterials()) add(material);
+    for (Material material : iceMaterials()) {
+        material.colorTexture = {}; // made here, and read nowhere
+        add(material);
+    }
     auto assets = std::make_shared<SceneAssets>(*loadSceneAssets(pictured, {}));
     assets->models[kBedModel] = std::move(bed);
+    assets->models[kRingModel] = std::make_shared<const SceneModel>(ringModel());
+    assets->images[kRimPicture] = std::make_shared<const Image>(rimPicture());
     for (int pose = 0; pose < kKoiPoses; ++pose)
         assets->models[koiPose(pose)] = std::make_shared<const SceneModel>(koiModel(pose));
     for (int k = 0; k < kKoiPictures; ++k) assets->images[koiCoat(k)] = std::make_shared<const Image>(koiPicture(k));
@@ -138,29 +174,74 @@ void showWarmth(Scene& scene, std::span<const Warmth> warmths) {
 
 } // namespace
 
-Pond::Pond(const Polygon& shore, std::size_t fish) : still_(stillScene(fish)), assets_(stillAssets(still_, shore)) {}
+Pond::Pond(const Polygon& shore, std::size_t fish, std::uint64_t seed)
+    : still_(stillScene(fish)), picture_(seed), meltwater_(seed), assets_(stillAssets(still_, shore)) {}
 
-/// New models for floes whose shape has changed, none for those that are gone.
-void Pond::updateShapes(const IceCover& ice) {
-    std::shared_ptr<SceneAssets> changed;
-    const auto change = [&]() -> SceneAssets& {
-        if (!changed) changed = std::make_shared<SceneAssets>(*assets_);
-        return *changed;
-    };
+SceneAssets& Pond::changing() {
+    if (!changed_) changed_ = std::make_shared<SceneAssets>(*assets_);
+    return *changed_;
+}
+
+/// New models for floes whose shape has changed, none for those that are gone. What melts changes all the time, and a
+/// few times a second are enough for the eye.
+void Pond::updateShapes(const IceCover& ice, double seconds) {
     std::map<int, Shape> shapes;
     for (const Floe& floe : ice.floes()) {
         const auto known = shapes_.find(floe.number);
-        Shape shape = known == shapes_.end() ? Shape{} : known->second;
-        if (shape.model.empty() || shape.version != floe.version || ice.freezing() != shape.grows || shape.grows) {
-            shape = {floe.version, floe.centre, floeAsset(floe.number), ice.freezing()};
-            change().models[shape.model] = std::make_shared<const SceneModel>(floeModel(ice, floe));
+        Shape shape = known == shapes_.end() ? Shape{} : std::move(known->second);
+        shape.age += seconds;
+        const bool isNew = shape.model.empty() || ice.freezing() != shape.grows;
+        const bool changes = shape.version != floe.version || shape.grows;
+        if (isNew || (changes && shape.age > (shape.grows ? kFrostModelEvery : kMeltModelEvery))) {
+            const bool first = shape.model.empty();
+            const FloeField before = std::exchange(shape.field, fieldOf(ice, floe));
+            shape.version = floe.version;
+            shape.middle = floe.centre;
+            shape.model = floeAsset(floe.number);
+            shape.grows = ice.freezing();
+            shape.age = 0.0;
+            picture_.paint(shape.field, first ? nullptr : &before);
+            changing().models[shape.model] = std::make_shared<const SceneModel>(floeModel(ice, floe, shape.field));
         }
         shapes.emplace(floe.number, std::move(shape));
     }
     for (const auto& [number, shape] : shapes_)
-        if (!shapes.contains(number)) change().models.erase(shape.model);
+        if (!shapes.contains(number)) changing().models.erase(floeAsset(number));
     shapes_ = std::move(shapes);
-    if (changed) assets_ = std::move(changed);
+    const auto shown = assets_->images.find(kSheetPicture);
+    if (shown == assets_->images.end() || shown->second != picture_.image())
+        changing().images[kSheetPicture] = picture_.image();
+}
+
+void Pond::updateWater(const IceCover& ice, Scene& scene, const glm::dvec2& waterSlope) {
+    const auto onFloe = [&](int number, const glm::dvec2& home) {
+        const auto floe = std::ranges::find(ice.floes(), number, &Floe::number);
+        if (floe == ice.floes().end()) return OnFloe{};
+        const SceneItem item = floeItem(*floe);
+        const Shape& shape = shapes_.at(number);
+        const glm::dquat turn(item.rotation);
+        const glm::dvec2 from = home - shape.middle;
+        return OnFloe{glm::dvec3(item.position) + turn * glm::dvec3(from.x, topAt(shape.field, home), from.y),
+                      turn * glm::dvec3(0.0, 1.0, 0.0)};
+    };
+    SceneModel model = waterModel(meltwater_, onFloe);
+    const bool wet = !model.model.meshes.front().primitives.empty();
+    if (wet) changing().models[kMeltwaterModel] = std::make_shared<const SceneModel>(std::move(model));
+    if (!wet && wet_) changing().models.erase(kMeltwaterModel);
+    wet_ = wet;
+    itemOf(scene, kMeltwaterItem).visible = wet;
+    int ring = kFirstRing;
+    for (const Drip& drip : meltwater_.drips()) {
+        const double share = drip.age / Meltwater::kDripLasts;
+        SceneItem& item = itemOf(scene, ring++);
+        item.visible = true;
+        const double radius = kRingSide * std::sqrt(drip.volume) * std::lerp(0.12, 1.0, std::sqrt(share));
+        item.position = {
+            glm::dvec3(drip.place.x, kWaterLevel + kOverWater + glm::dot(waterSlope, drip.place), drip.place.y)};
+        item.rotation = turnOf(0.0, waterSlope);
+        item.scale = {radius, 1.0, radius};
+        item.opacity = static_cast<float>(0.49 * (1.0 - share) * (1.0 - share));
+    }
 }
 
 SceneItem Pond::floeItem(const Floe& floe) const {
@@ -168,19 +249,39 @@ SceneItem Pond::floeItem(const Floe& floe) const {
     SceneItem item = demoItem(kFirstFloe + floe.number, "Floe", MeshItem{.model = shape.model});
     const glm::dvec2 place = placed(floe.motion.placement, shape.middle);
     item.position = {glm::dvec3(place.x, kIceTop + floe.bob.rise, place.y)};
-    item.rotation = turnOf(floe.motion.placement.turn, floe.bob.tilt);
+    // Its low side stays over the water, which is drawn level and would lie on it with a straight rim.
+    const double steep = floe.radius * glm::length(floe.bob.tilt - slope_);
+    const double share = std::min(1.0, kKeepsDry * (kIceTop - kWaterLevel) / std::max(steep, 1e-9));
+    item.rotation = turnOf(floe.motion.placement.turn, slope_ + share * (floe.bob.tilt - slope_));
     return item;
 }
 
-std::shared_ptr<const Scene> Pond::show(const IceCover& ice, const School& school, std::span<const Warmth> warmths,
-                                        const glm::dvec2& waterSlope) {
-    updateShapes(ice);
+/// As much of the water's slope as shows: under ice that holds to the bank it cannot rise over its top.
+glm::dvec2 Pond::underFixedIce(const IceCover& ice, const glm::dvec2& slope, double seconds) {
+    const bool held = std::ranges::any_of(ice.floes(), &Floe::fixed);
+    held_ += ((held ? 1.0 : 0.0) - held_) * (1.0 - std::exp(-seconds / kLetsGo));
+    const double rise = std::abs(slope.x) * kPondHalf.x + std::abs(slope.y) * kPondHalf.y;
+    const double most = kKeepsDry * (kIceTop - kWaterLevel);
+    return rise > most ? slope * std::lerp(1.0, most / rise, held_) : slope;
+}
+
+std::shared_ptr<const Scene> Pond::show(const IceCover& ice, const School& school, const MeltingWeather& weather,
+                                        double seconds, const glm::dvec2& waterSlope) {
+    updateShapes(ice, seconds);
+    const auto fieldOfFloe = [&](int number) {
+        const auto known = shapes_.find(number);
+        return known == shapes_.end() ? nullptr : &known->second.field;
+    };
+    meltwater_.advance(ice, fieldOfFloe, weather, seconds);
+    const glm::dvec2 shown = slope_ = underFixedIce(ice, waterSlope, seconds);
     auto scene = std::make_shared<Scene>(still_);
-    itemOf(*scene, kWaterItem).rotation = turnOf(0.0, waterSlope);
-    showFish(*scene, school, waterSlope);
-    showWarmth(*scene, warmths);
+    itemOf(*scene, kWaterItem).rotation = turnOf(0.0, shown);
+    showFish(*scene, school, shown);
+    showWarmth(*scene, weather.warmths);
+    updateWater(ice, *scene, shown);
     for (const Floe& floe : ice.floes())
         if (floe.area > 0.0) scene->items.push_back(floeItem(floe));
+    if (changed_) assets_ = std::exchange(changed_, nullptr);
     return scene;
 }
 

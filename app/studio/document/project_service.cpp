@@ -21,6 +21,7 @@
 #include "app/studio/document/scene_assets_reader.h"
 #include "app/studio/document/session_keeper.h"
 #include "app/studio/document/target_placing.h"
+#include "app/weather/forecast_watch.h"
 #include "app/weather/weather_fetch.h"
 #include "core/base/error.h"
 #include "core/base/resources.h"
@@ -66,11 +67,37 @@ const Demo* findDemo(const std::string& name) {
     return found == demos().end() ? nullptr : &*found;
 }
 
-/// A forecast on the web is fetched first: applications know no network.
-DemoTold withForecast(DemoTold told) {
-    if (const auto weather = told.find("weather"); weather != told.end() && isWebAddress(weather->second))
-        weather->second = fetchedForecast(weather->second).string();
-    return told;
+/// What an application is told, and what comes while it runs.
+struct Told {
+    DemoTold told;
+    DemoFeed feed;
+    std::optional<Notice> notice;
+};
+
+/// A forecast on the web is fetched first, and again and again while the application has its feed: applications know no
+/// network. Where none comes, the last one shows until one does.
+Told withForecast(DemoTold told) {
+    const auto weather = told.find("weather");
+    if (weather == told.end() || !isWebAddress(weather->second)) return {std::move(told), {}, {}};
+    const std::string address = weather->second;
+    const CachedForecast forecast = fetchedForecast(address);
+    weather->second = forecast.file.string();
+    const auto watch = std::make_shared<ForecastWatch>(address, forecast.age);
+    auto feed = [watch, age = forecast.age](const std::string& option) mutable -> std::optional<DemoNews> {
+        if (option != "weather") return std::nullopt;
+        if (age > 0.0) return DemoNews{{}, std::exchange(age, 0.0)};
+        std::optional<std::string> text = watch->take();
+        return text ? std::optional(DemoNews{std::move(*text), 0.0}) : std::nullopt;
+    };
+    std::optional<Notice> notice;
+    if (!forecast.problem.empty())
+        notice = Notice{Notice::Level::warning,
+                        QString::fromStdString(address),
+                        QString::fromStdString(forecast.problem),
+                        QObject::tr("the forecast of %1 minutes ago shows until another comes")
+                            .arg(std::lround(forecast.age / 60.0)),
+                        {}};
+    return {std::move(told), std::move(feed), std::move(notice)};
 }
 
 /// Where the keepsake of an application lies. A second studio begins with a copy of the first's.
@@ -93,7 +120,10 @@ Played playedOf(const OpenDemo& open, const fs::path& folder, const Progress& pr
     if (demo == nullptr || !demo->program) return {};
     Played played;
     if (demo->keeps) played.keepsake = keepsakeIn(folder, demo->name);
-    BegunProgram begun = beginProgram(*demo, {newSeed(), withForecast(open.told), played.keepsake}, progress);
+    Told told = withForecast(open.told);
+    if (told.notice) played.notices.push_back(*told.notice);
+    BegunProgram begun =
+        beginProgram(*demo, {newSeed(), std::move(told.told), played.keepsake, std::move(told.feed)}, progress);
     played.program = std::move(begun.program);
     const QString name = QString::fromStdString(demo->name);
     for (const std::string& note : begun.notes)

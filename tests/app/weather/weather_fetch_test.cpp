@@ -1,14 +1,21 @@
 #include "app/weather/weather_fetch.h"
 
+#include <chrono>
+#include <filesystem>
+#include <optional>
+#include <string>
+
 #include <QCoreApplication>
 #include <QElapsedTimer>
 #include <QTcpServer>
 #include <QTcpSocket>
+#include <QTemporaryDir>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "app/applications/ambient/weather_file.h"
+#include "app/weather/forecast_watch.h"
 #include "core/base/error.h"
 
 // Weather over a network, from a server of the test's own: answers, refusals, silence and rubbish.
@@ -109,6 +116,71 @@ TEST_F(WeatherFetch, NobodyThereAndNoAddress) {
         EXPECT_THROW((void)fetchWeather(wrong), InvalidInput) << wrong;
     EXPECT_TRUE(isWebAddress("https://api.open-meteo.com/v1/forecast"));
     EXPECT_FALSE(isWebAddress("https.json"));
+}
+
+/// With a cache of the test's own.
+class ForecastKept : public WeatherFetch {
+protected:
+    ForecastKept() { qputenv("XDG_CACHE_HOME", cache_.path().toUtf8()); }
+    ~ForecastKept() override { qunsetenv("XDG_CACHE_HOME"); }
+    /// Lets the server answer for so long, or until it is as wanted.
+    template <typename Wanted> bool within(double seconds, const Wanted& wanted) {
+        QElapsedTimer timer;
+        for (timer.start(); timer.elapsed() < 1000.0 * seconds;) {
+            if (wanted()) return true;
+            QCoreApplication::processEvents(QEventLoop::AllEvents, 5);
+        }
+        return wanted();
+    }
+    QTemporaryDir cache_;
+};
+
+TEST_F(ForecastKept, TheLastOneShowsWhereNoneComes) {
+    answer("503 Service Unavailable", "");
+    EXPECT_THROW((void)fetchedForecast(address(), 0.5), DeviceError) << "there is none yet";
+    answer("200 OK", kForecast);
+    const CachedForecast first = fetchedForecast(address(), 0.5);
+    EXPECT_TRUE(first.problem.empty());
+    EXPECT_EQ(ambient::readForecastFile(first.file).weather.hours().front().temperature, 9.5);
+    answer("503 Service Unavailable", "");
+    std::filesystem::last_write_time(first.file, std::filesystem::file_time_type::clock::now() - std::chrono::hours(2));
+    const CachedForecast again = fetchedForecast(address(), 0.5);
+    EXPECT_EQ(again.file, first.file);
+    EXPECT_NEAR(again.age, 7200.0, 5.0);
+    EXPECT_THAT(again.problem, HasSubstr("status 503"));
+    EXPECT_THROW((void)fetchedForecast(address() + "&longitude=3", 0.5), DeviceError) << "that is another place";
+    // What the service explains is no forecast, and does not replace one.
+    answer("400 Bad Request", R"({"error": true, "reason": "Latitude must be in range"})");
+    EXPECT_THROW((void)ambient::readForecastFile(fetchedForecast(address(), 0.5).file), DataError);
+    EXPECT_EQ(ambient::readForecastFile(first.file).weather.hours().front().temperature, 9.5);
+}
+
+TEST_F(ForecastKept, IsFetchedAgainAndTriedAgainAfterFailures) {
+    answer("200 OK", kForecast);
+    ForecastWatch watch(address(), 0.0, {0.05, 0.02, 0.06, 1.0});
+    EXPECT_FALSE(watch.take()) << "nothing yet, and no waiting for it";
+    std::optional<std::string> news;
+    const auto comes = [&] { return (news = watch.take()).has_value(); };
+    ASSERT_TRUE(within(3.0, comes));
+    EXPECT_EQ(*news, kForecast);
+    ASSERT_TRUE(within(3.0, comes)) << "and again";
+    answer("500 Internal Server Error", "");
+    ASSERT_TRUE(within(3.0, [&] { return watch.failures() >= 3; }));
+    (void)watch.take();
+    EXPECT_FALSE(watch.take()) << "a failure is no news";
+    answer("200 OK", kForecast);
+    ASSERT_TRUE(within(3.0, comes)) << "after failures it is tried again";
+    EXPECT_EQ(watch.failures(), 0);
+}
+
+TEST_F(ForecastKept, AWatchEndsAtOnceWhileAServerIsSilent) {
+    QElapsedTimer timer;
+    {
+        ForecastWatch watch(address(), 0.0, {0.01, 0.01, 0.01, 30.0});
+        EXPECT_TRUE(within(3.0, [&] { return asked_.contains("GET"); }));
+        timer.start();
+    }
+    EXPECT_LT(timer.elapsed(), 1000);
 }
 
 } // namespace

@@ -2,6 +2,8 @@
 #include <cmath>
 #include <numeric>
 #include <string>
+#include <thread>
+#include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -9,8 +11,10 @@
 #include <glm/geometric.hpp>
 
 #include "app/applications/ambient/ambient.h"
+#include "app/applications/ambient/coming.h"
 #include "app/applications/ambient/simulated_year.h"
 #include "core/base/error.h"
+#include "core/base/resources.h"
 #include "core/motion/causal_split.h"
 #include "core/motion/frequency_split.h"
 #include "core/motion/surface_heights.h"
@@ -205,26 +209,173 @@ TEST(AmbientProgram, FogAndCloudsDriftWithTheWind) {
     EXPECT_GT(glm::dot(program.view().drifted, towards), 0.003);
 }
 
-TEST(AmbientProgram, TheComingHoursAreThoseOfTheForecast) {
+TEST(AmbientProgram, FogStaysOnTheDeviceAndFillsLowPlacesFirst) {
+    float before = 0.0F;
+    for (const double visibility : {4000.0, 2000.0, 300.0}) {
+        WeatherHour hour;
+        hour.visibility = visibility;
+        AmbientProgram program(1, constant(hour));
+        Visit visit(program);
+        visit.frames(7.0); // one of the banks is full
+        float top = 0.0F;
+        for (int k = 0; k < kFogs; ++k) {
+            const SceneItem& item = visit.item(kFirstFog + k);
+            const auto& fog = std::get<FogItem>(item.kind);
+            EXPECT_LT(std::abs(item.position.x) + 0.5F * fog.size.x, 0.105F);
+            EXPECT_LT(std::abs(item.position.z) + 0.5F * fog.size.z, 0.075F);
+            EXPECT_LT(item.position.y - 0.5F * fog.size.y, static_cast<float>(kSeaLevel)) << "it lies on the water";
+            top = std::max(top, item.position.y + 0.5F * fog.size.y);
+        }
+        EXPECT_GT(top, before) << "the thicker, the higher";
+        before = top;
+    }
+}
+
+TEST(AmbientProgram, TheCardsTellOfEveryThirdHourOfTheForecast) {
     std::vector<WeatherHour> hours(48);
-    for (std::size_t k = 0; k < hours.size(); ++k) hours[k].rain = k == 14 ? 5.0 : 0.0;
+    for (std::size_t k = 0; k < hours.size(); ++k) {
+        hours[k].temperature = static_cast<double>(k) - 14.4;
+        hours[k].rain = k == 14 ? 5.0 : 0.0;
+    }
     AmbientSettings settings;
     settings.weather = std::make_shared<const Weather>(*timeFrom("2026-05-17T00:00", 3600.0), hours);
     settings.begin = timeFrom("2026-05-17T09:30", 3600.0);
+    settings.place.utcOffset = 3600.0;
     AmbientProgram program(1, settings);
     Visit visit(program);
     visit.frame();
+    const auto itemOfCard = [&](int k) {
+        return visit.item(kFirstCard + program.view().cards[static_cast<std::size_t>(k)].slot);
+    };
     float before = -1.0F;
-    for (int k = 0; k < kComingHours; ++k) {
-        const float x = visit.item(kFirstComing + 3 * k).position.x;
-        EXPECT_GT(x, before) << "the nearest first";
-        before = x;
-        EXPECT_EQ(visit.item(kFirstComing + 3 * k + 2).visible, k == 4) << "it rains at 14, in hour " << 10 + k;
-        EXPECT_NEAR(program.view().coming[static_cast<std::size_t>(k)].ahead, 0.5 + k, 1e-9);
+    for (int k = 0; k < kCards; ++k) {
+        const View::Card& card = program.view().cards[static_cast<std::size_t>(k)];
+        EXPECT_NEAR(card.ahead, 2.5 + 3.0 * k, 1e-9);
+        const ForecastCard says = cardOf(program.view(), card);
+        EXPECT_EQ(says.hour, (12 + 3 * k) % 24);
+        EXPECT_EQ(says.degrees, std::lround(12.0 + 3.0 * k - 14.4));
+        EXPECT_EQ(says.sign == WeatherSign::rain, k == 1) << "a shower at 14 is told at 15";
+        EXPECT_GT(itemOfCard(k).position.x, before) << "the nearest first";
+        before = itemOfCard(k).position.x;
     }
-    const float from = visit.item(kFirstComing + 3 * 4).position.x;
+    const float apart = itemOfCard(1).position.x - itemOfCard(0).position.x;
+    EXPECT_GT(apart, Coming::kCardWidth) << "none hides another";
+    const float from = itemOfCard(0).position.x;
     visit.frames(1.0);
-    EXPECT_LT(visit.item(kFirstComing + 3 * 4).position.x, from) << "it comes nearer";
+    EXPECT_LT(itemOfCard(0).position.x, from) << "it comes nearer";
+}
+
+TEST(AmbientForecastCard, SaysTheWorstOfTheWeather) {
+    WeatherHour hour;
+    hour.cloudCover = 0.1;
+    EXPECT_EQ(signOf(hour, true), WeatherSign::sun);
+    EXPECT_EQ(signOf(hour, false), WeatherSign::moon);
+    hour.cloudCover = 0.5;
+    EXPECT_EQ(signOf(hour, true), WeatherSign::sunAndCloud);
+    hour.cloudCover = 0.9;
+    EXPECT_EQ(signOf(hour, true), WeatherSign::cloud);
+    hour.visibility = 300.0;
+    EXPECT_EQ(signOf(hour, true), WeatherSign::fog);
+    hour.rain = 0.5;
+    EXPECT_EQ(signOf(hour, true), WeatherSign::rain);
+    hour.snow = 1.0;
+    EXPECT_EQ(signOf(hour, true), WeatherSign::snow);
+    hour.thunder = 1.0;
+    EXPECT_EQ(signOf(hour, true), WeatherSign::thunder);
+}
+
+// Legible means contrast: what is written is at least seven times as light as its plate (WCAG 2, level AAA).
+TEST(AmbientForecastCard, WritesWithTheContrastOfAAndEverySignDiffers) {
+    const Font font(resourceFile("fonts/Inter-SemiBold.otf"));
+    const auto light = [](const Image::Pixel& pixel) {
+        const auto linear = [](std::uint8_t byte) {
+            const double share = byte / 255.0;
+            return share <= 0.04045 ? share / 12.92 : std::pow((share + 0.055) / 1.055, 2.4);
+        };
+        return 0.2126 * linear(pixel[0]) + 0.7152 * linear(pixel[1]) + 0.0722 * linear(pixel[2]);
+    };
+    std::vector<Image> pictures;
+    for (const WeatherSign sign :
+         {WeatherSign::sun, WeatherSign::moon, WeatherSign::sunAndCloud, WeatherSign::moonAndCloud, WeatherSign::cloud,
+          WeatherSign::fog, WeatherSign::rain, WeatherSign::snow, WeatherSign::thunder}) {
+        pictures.push_back(pictureOf({sign, 14, -8}, font));
+        const Image& picture = pictures.back();
+        double most = 0.0;
+        int inSign = 0, inWords = 0;
+        for (int y = 0; y < kCardPixels.y; ++y)
+            for (int x = 0; x < kCardPixels.x; ++x) {
+                const double here = light(picture.at(x, y));
+                most = std::max(most, here);
+                const bool bright = here > 0.1;
+                (y > 52 && y < 148 ? inSign : inWords) += bright ? 1 : 0;
+            }
+        const double plate = light(picture.at(kCardPixels.x / 2, 5));
+        EXPECT_GT((most + 0.05) / (plate + 0.05), 7.0);
+        EXPECT_GT(inSign, 500);
+        EXPECT_GT(inWords, 700);
+        EXPECT_EQ(picture.at(0, 0)[3], 0) << "round corners";
+        for (std::size_t k = 0; k + 1 < pictures.size(); ++k) EXPECT_NE(pictures[k], picture);
+    }
+}
+
+std::string forecastText(double degrees) {
+    return R"({"hourly": {"time": ["2026-07-01T00:00"], "temperature_2m": [)" + std::to_string(degrees) +
+           R"(], "precipitation": [0], "cloud_cover": [0], "wind_speed_10m": [3.6], "wind_direction_10m": [0]}})";
+}
+
+TEST(AmbientProgram, ALaterForecastTakesThePlaceOfTheLastAndItsAgeIsSaid) {
+    AmbientSettings settings = constant(WeatherHour{});
+    std::optional<DemoNews> next = DemoNews{{}, 3.0 * 3600.0};
+    settings.feed = [&](const std::string& option) {
+        EXPECT_EQ(option, "weather");
+        return std::exchange(next, std::nullopt);
+    };
+    AmbientProgram program(1, settings);
+    Visit visit(program);
+    visit.frame();
+    ASSERT_TRUE(visit.content().caption);
+    EXPECT_NE(visit.content().caption->sentence.english.find("The forecast is 3 hours old."), std::string::npos);
+    EXPECT_NE(visit.content().caption->sentence.in(Language::german).find("3 Stunden alt"), std::string::npos);
+    EXPECT_EQ(program.view().weather.temperature, 15.0);
+    const auto until = [&](double degrees) {
+        for (int k = 0; k < 2000 && program.view().weather.temperature != degrees; ++k) {
+            visit.frame();
+            std::this_thread::yield();
+        }
+        return program.view().weather.temperature;
+    };
+    next = DemoNews{"no forecast at all", 0.0};
+    visit.frames(0.5);
+    EXPECT_EQ(program.view().weather.temperature, 15.0) << "the last one goes on";
+    EXPECT_GT(program.forecastAge(), 3.0 * 3600.0);
+    next = DemoNews{forecastText(21.5), 0.0};
+    EXPECT_EQ(until(21.5), 21.5);
+    EXPECT_LT(program.forecastAge(), 60.0);
+    EXPECT_EQ(program.view().cards.front().weather.temperature, 21.5) << "cards too";
+}
+
+TEST(AmbientProgram, TheRealClockIsShownAndReturnedTo) {
+    AmbientSettings settings = constant(WeatherHour{});
+    double now = 1'780'050'000.0;
+    settings.now = [&now] { return now; };
+    settings.daySeconds = 86'400.0;
+    AmbientProgram program(1, settings);
+    Visit visit(program);
+    visit.frame();
+    EXPECT_DOUBLE_EQ(program.view().utc, now);
+    now += 3600.0 * 7.0; // the machine has slept
+    visit.frames(8.0);
+    EXPECT_NEAR(program.view().utc, now, 1.0);
+    visit.frame({{"key.left", 1.0}});
+    visit.frames(2.0);
+    EXPECT_LT(program.view().utc, now - 3600.0) << "a visitor looks at the hours before";
+    visit.frame({{"key.left", 0.0}});
+    visit.frames(Visitor::kSilence + 8.0);
+    EXPECT_NEAR(program.view().utc, now, 1.0);
+    EXPECT_EQ(settingsFrom({{"clock", "real"}}).daySeconds, 86'400.0);
+    EXPECT_TRUE(settingsFrom({{"clock", "real"}}).now);
+    EXPECT_FALSE(settingsFrom({}).now) << "the quick day is the usual one";
+    EXPECT_THROW((void)settingsFrom({{"clock", "slow"}}), InvalidInput);
 }
 
 TEST(AmbientProgram, RefusesSettingsThatAreNone) {
