@@ -68,7 +68,7 @@ Image besideEachOther(const Image& left, const Image& right, const std::array<Wo
 }
 
 glm::ivec2 inlaySize(glm::ivec2 picture) {
-    const int wide = std::max(16, static_cast<int>(std::lround(0.26 * picture.x)));
+    const int wide = std::max(16, static_cast<int>(std::lround(0.2 * picture.x)));
     return {wide, wide * 5 / 8};
 }
 
