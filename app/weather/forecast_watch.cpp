@@ -10,8 +10,8 @@
 
 namespace lumorph {
 
-ForecastWatch::ForecastWatch(std::string address, double age, const WatchTimes& times)
-    : address_(std::move(address)), times_(times), wait_(age < times.every ? times.every - age : times.firstTry),
+ForecastWatch::ForecastWatch(std::string address, bool isNew, const WatchTimes& times)
+    : address_(std::move(address)), times_(times), wait_(isNew ? times.every : times.firstTry),
       thread_([this](const std::stop_token& stop) { run(stop); }) {}
 
 ForecastWatch::~ForecastWatch() { thread_.request_stop(); }
@@ -34,7 +34,11 @@ void ForecastWatch::run(const std::stop_token& stop) {
 bool ForecastWatch::fetch(const std::stop_token& stop) {
     try {
         std::string text = fetchWeather(address_, times_.silence, stop);
-        keepForecast(address_, text);
+        if (isRefusal(text)) return false;
+        try {
+            keepForecast(address_, text);
+        } catch (const DeviceError&) { // a full disk: it shows all the same
+        }
         const std::scoped_lock lock(mutex_);
         news_ = std::move(text);
         return true;

@@ -21,8 +21,8 @@ struct WatchTimes {
 /// `fetchedForecast` keeps it. Needs a QCoreApplication.
 class ForecastWatch {
 public:
-    /// Begins with one that came `age` seconds ago: fetched again after `every`, or soon where it is older than that.
-    explicit ForecastWatch(std::string address, double age = 0.0, const WatchTimes& times = {});
+    /// Begins with one that has just come, or, not `isNew`, as after a failure.
+    explicit ForecastWatch(std::string address, bool isNew = true, const WatchTimes& times = {});
     ~ForecastWatch(); ///< at once, whatever is on its way
 
     /// The text of one that has come since this was asked last; never waits.

@@ -69,13 +69,12 @@ std::filesystem::path cacheOf(const std::string& address) {
     return cache / "lumorph" / ("forecast-" + name.toStdString() + ".json");
 }
 
-/// Whether an answer is an error that the service explains.
+} // namespace
+
 bool isRefusal(const std::string& answer) {
     const QJsonDocument json = QJsonDocument::fromJson(QByteArray::fromStdString(answer));
     return !json.isObject() || json.object().value("error").toBool();
 }
-
-} // namespace
 
 bool isWebAddress(const std::string& text) { return text.starts_with("http://") || text.starts_with("https://"); }
 
@@ -101,29 +100,31 @@ std::string fetchWeather(const std::string& address, double seconds, const std::
 std::filesystem::path keepForecast(const std::string& address, const std::string& answer) {
     const std::filesystem::path file = cacheOf(address);
     std::error_code failed; // the writer names it
-    if (isRefusal(answer) && std::filesystem::exists(file, failed)) return file;
     std::filesystem::create_directories(file.parent_path(), failed);
     writeFileAtomically(file, std::as_bytes(std::span(answer)));
     return file;
 }
 
 CachedForecast fetchedForecast(const std::string& address, double seconds) {
+    const std::filesystem::path kept = cacheOf(address);
+    std::error_code none;
+    const auto written = std::filesystem::last_write_time(kept, none);
+    const auto last = [&](std::string problem) -> CachedForecast {
+        const auto age = std::filesystem::file_time_type::clock::now() - written;
+        return {kept, std::max(0.0, std::chrono::duration<double>(age).count()), std::move(problem)};
+    };
     try {
         const std::string answer = fetchWeather(address, seconds);
-        // The service's own reason says more than an old forecast.
         if (!isRefusal(answer)) return {keepForecast(address, answer), 0.0, {}};
-        const std::filesystem::path refused = cacheOf(address + " refused");
-        std::error_code failed; // the writer names it
-        std::filesystem::create_directories(refused.parent_path(), failed);
+        // An address that brought one before is refused for a while: too many have asked, or a network wants a log-in.
+        if (!none) return last(address + ": it is no forecast that has come");
+        const std::filesystem::path refused = cacheOf(address + " refused"); // whose reader names the reason
+        std::filesystem::create_directories(refused.parent_path(), none);
         writeFileAtomically(refused, std::as_bytes(std::span(answer)));
         return {refused, 0.0, {}};
     } catch (const DeviceError& error) {
-        const std::filesystem::path file = cacheOf(address);
-        std::error_code failed;
-        const auto written = std::filesystem::last_write_time(file, failed);
-        if (failed) throw;
-        const auto age = std::filesystem::file_time_type::clock::now() - written;
-        return {file, std::max(0.0, std::chrono::duration<double>(age).count()), error.what()};
+        if (none) throw;
+        return last(error.what());
     }
 }
 

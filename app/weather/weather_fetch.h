@@ -9,6 +9,9 @@ namespace lumorph {
 /// Whether a text is an address of the web, http or https.
 [[nodiscard]] bool isWebAddress(const std::string& text);
 
+/// Whether an answer is no forecast: an error that the service explains, or the page of a network that wants a log-in.
+[[nodiscard]] bool isRefusal(const std::string& answer);
+
 /// What a server answers to a GET, at most 16 MiB; waits for it, no longer than `seconds` without a byte, nor after
 /// `stop`. Follows
 /// redirections, but none from https to http. Needs a QCoreApplication. Throws InvalidInput for what is no address,
@@ -29,8 +32,7 @@ struct CachedForecast {
 /// DeviceError where it cannot be written.
 [[nodiscard]] CachedForecast fetchedForecast(const std::string& address, double seconds = 15.0);
 
-/// Writes what has come where `fetchedForecast` looks for it. An answer that is an error of the service replaces none
-/// that is a forecast. Throws DeviceError.
+/// Writes a forecast where `fetchedForecast` looks for it. Throws DeviceError.
 std::filesystem::path keepForecast(const std::string& address, const std::string& answer);
 
 } // namespace lumorph

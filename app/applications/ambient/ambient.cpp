@@ -110,13 +110,15 @@ ShowContent AmbientProgram::frame(const ShowMoment& moment) {
 
 /// A later forecast is read beside the show; one that cannot be read leaves the last.
 void AmbientProgram::takeNews(double step) {
-    newsAge_ += step;
     if (!settings_.feed) return;
+    newsAge_ += step;
     if (reading_.valid()) {
         if (reading_.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return;
         std::shared_ptr<const Weather> weather = reading_.get();
         if (!weather) return;
         settings_.weather = std::move(weather);
+        clock_->setDays(notableDays(*settings_.weather, settings_.place),
+                        std::max(settings_.weather->begin(), settings_.begin.value_or(0.0)));
         newsAge_ = 0.0;
         day_ = 0.0, hour_ = -1.0; // all that was looked up
         return;
@@ -175,12 +177,12 @@ void AmbientProgram::lookAhead() {
         coming.weather = settings_.weather->at(then);
         coming.day = sunAt(settings_.place, then).elevation > kHorizon;
     }
-    lookAtCards(hour != hour_);
+    lookAtCards(hour_ < 0.0);
     hour_ = hour;
 }
 
-/// Every third hour of the place's clock.
-void AmbientProgram::lookAtCards(bool anew) {
+/// Every third hour of the place's clock, which need not be a whole one elsewhere.
+void AmbientProgram::lookAtCards(bool otherWeather) {
     constexpr double kApart = 3600.0 * kCardHours;
     const double offset = settings_.place.utcOffset;
     const auto number = static_cast<long long>(std::floor((view_.utc + offset) / kApart)) + 1;
@@ -188,7 +190,7 @@ void AmbientProgram::lookAtCards(bool anew) {
         View::Card& card = view_.cards[static_cast<std::size_t>(k)];
         const double then = kApart * static_cast<double>(number + k) - offset;
         card.ahead = (then - view_.utc) / 3600.0;
-        if (!anew) continue;
+        if (!otherWeather && number == cardNumber_) continue;
         card.slot = static_cast<int>((((number + k) % kCards) + kCards) % kCards);
         card.day = sunAt(settings_.place, then).elevation > kHorizon;
         card.weather = settings_.weather->at(then);
@@ -199,6 +201,7 @@ void AmbientProgram::lookAtCards(bool anew) {
             card.weather.thunder = std::max(card.weather.thunder, hour.thunder);
         }
     }
+    cardNumber_ = number;
 }
 
 /// Light's sea goes after the wind; clouds go with it.

@@ -63,7 +63,7 @@ public:
 private:
     void lookUp();
     void lookAhead();
-    void lookAtCards(bool anew);
+    void lookAtCards(bool otherWeather);
     void blow(double step);
     void slosh(const ShowMoment& moment);
     void turnFog(double step);
@@ -90,6 +90,7 @@ private:
 
     View view_;
     SeaState followed_;
+    long long cardNumber_ = -1;                       ///< of the first card, three-hour marks since 1970
     double day_ = 0.0, moonSeen_ = 0.0, hour_ = -1.0; ///< UTC for which the view's hours, moon and coming hours are
     std::optional<double> flashed_;                   ///< seconds since the last bolt
     double strength_ = 0.0;                           ///< of its thunder

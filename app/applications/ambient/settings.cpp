@@ -87,6 +87,11 @@ AmbientSettings settingsFrom(const DemoTold& settings) {
             throw InvalidInput("setting '" + name.substr(0, 40) + "'", "the coast has none of this name",
                                "use weather, place, begin, day, clock or anticipation");
     }
+    for (const char* other : {"begin", "day"})
+        if (read.now && settings.contains(other))
+            throw InvalidInput("setting 'clock'",
+                               std::string("the room's own time leaves no choice of '") + other + "'",
+                               "leave one of them out");
     return read;
 }
 

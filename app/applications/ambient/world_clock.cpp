@@ -22,6 +22,14 @@ WorldClock::WorldClock(const Place& place, std::vector<double> days, double begi
     if (today != days_.end()) day_ = static_cast<std::size_t>(today - days_.begin());
 }
 
+void WorldClock::setDays(std::vector<double> days, double begin) {
+    days_ = std::move(days);
+    begin_ = begin;
+    const auto today = std::ranges::find(days_, localMidnight(place_, utc_));
+    day_ = today == days_.end() ? 0 : static_cast<std::size_t>(today - days_.begin());
+    if (today == days_.end() && !now_) utc_ = days_.front() + (utc_ - localMidnight(place_, utc_));
+}
+
 void WorldClock::goToNextDay(double hour) {
     day_ = (day_ + 1) % days_.size();
     utc_ = days_[day_] + 3600.0 * hour;

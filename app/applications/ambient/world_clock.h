@@ -22,6 +22,9 @@ public:
 
     /// A step of the show's time, seconds.
     void advance(double step, const Visitor& visitor);
+    /// Other days and another beginning, of a later forecast. The time that is shown stays where it lies among them;
+    /// else it goes to the first of them.
+    void setDays(std::vector<double> days, double begin);
     [[nodiscard]] double utc() const noexcept { return utc_; }
     /// Seconds of the world in one of the show, now; negative while it runs back.
     [[nodiscard]] double speed() const noexcept { return speed_; }

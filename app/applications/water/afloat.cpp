@@ -60,13 +60,14 @@ void keepApart(std::span<Float* const> all) {
     for (std::size_t i = 0; i < all.size(); ++i)
         for (std::size_t j = i + 1; j < all.size(); ++j) {
             Float &a = *all[i], &b = *all[j];
+            if (a.above > 0.0 || b.above > 0.0) continue; // still falls
             const glm::dvec2 way = b.at - a.at;
             const double far = glm::length(way), least = a.radius + b.radius;
             if (far >= least || far < 1e-9) continue;
             const glm::dvec2 push = way * (0.5 * (least - far) / far);
             a.at -= push;
             b.at += push;
-            std::swap(a.velocity, b.velocity);
+            if (glm::dot(b.velocity - a.velocity, way) < 0.0) std::swap(a.velocity, b.velocity);
         }
     for (Float* one : all)
         for (int axis = 0; axis < 2; ++axis) {

@@ -10,6 +10,7 @@
 namespace lumorph::sea {
 namespace {
 
+constexpr float kStill = 1e-12F;                     ///< metres, or metres a second
 constexpr double kRippleStep = 1.0 / 120.0;          ///< seconds; a ring crosses 0.4 of the grid's spacing in it
 constexpr double kMostBehind = 0.25;                 ///< seconds; after a pause the rest is left out
 constexpr double kSpacing = 0.0025;                  ///< metres
@@ -77,7 +78,12 @@ void Ripples::step(double seconds) {
     }
     // Water that a touch has moved away comes back from all sides.
     const float kept = 1.0F - 0.5F * dt;
-    for (std::size_t k = 0; k < heights_.size(); ++k) heights_[k] = kept * (heights_[k] + dt * speeds_[k]);
+    for (std::size_t k = 0; k < heights_.size(); ++k) {
+        heights_[k] = kept * (heights_[k] + dt * speeds_[k]);
+        // What dies away would end in denormal numbers, with which processors are slow.
+        if (std::abs(heights_[k]) < kStill) heights_[k] = 0.0F;
+        if (std::abs(speeds_[k]) < kStill) speeds_[k] = 0.0F;
+    }
 }
 
 void Ripples::drive(const Touch& touch, double seconds) {

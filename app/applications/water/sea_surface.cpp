@@ -160,6 +160,7 @@ void SeaSurface::advanceFoam(double seconds, std::span<const Waterline> lines) {
     for (std::size_t k = 0; k < white_.size(); ++k) {
         const float steep = (glm::length(slopes_[k]) - static_cast<float>(kSteep)) / static_cast<float>(kBreaks);
         white_[k] = std::min(1.0F, kept * white_[k] + comes * std::clamp(steep, 0.0F, 1.0F));
+        if (white_[k] < 1e-6F) white_[k] = 0.0F; // before it is denormal, which is slow
         foam_[k] = std::max(white_[k], rim_[k]);
     }
     for (const Waterline& line : lines) addFoamAlong(line);

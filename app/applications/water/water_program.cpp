@@ -143,7 +143,8 @@ void WaterProgram::takeHands(const ShowMoment& moment) {
         const glm::dvec2 place(at.x, at.z);
         if (!std::isfinite(at.x + at.y + at.z) || glm::any(glm::greaterThan(glm::abs(place), sea::Ripples::kHalf)))
             continue;
-        if (at.y - sea::SeaSurface::kLevel - water_.heightAt(place) > kHandOn) continue;
+        // What lies under the device is put away, and no hand.
+        if (at.y < 0.0 || at.y - sea::SeaSurface::kLevel - water_.heightAt(place) > kHandOn) continue;
         if (!hands_.contains(body.name)) touch(place, 1.0);
         on.insert(body.name);
     }

@@ -82,7 +82,7 @@ Told withForecast(DemoTold told) {
     const std::string address = weather->second;
     const CachedForecast forecast = fetchedForecast(address);
     weather->second = forecast.file.string();
-    const auto watch = std::make_shared<ForecastWatch>(address, forecast.age);
+    const auto watch = std::make_shared<ForecastWatch>(address, forecast.problem.empty());
     auto feed = [watch, age = forecast.age](const std::string& option) mutable -> std::optional<DemoNews> {
         if (option != "weather") return std::nullopt;
         if (age > 0.0) return DemoNews{{}, std::exchange(age, 0.0)};

@@ -16,12 +16,15 @@ namespace lumorph {
 namespace {
 
 constexpr auto kReached = static_cast<float>(CreaseFinder::kRadius);
-constexpr int kMostSteps = 64;     // of one walk
-constexpr float kFlat = 1e-4F;     // radians: what turns less is no part of a fold
-constexpr float kOwnShare = 0.75F; // an edge that does this much of the turning is a fold by itself
-constexpr float kSharp = 0.5F;     // radians of turning at one edge, at which a walk ends
-constexpr double kShortest = 2.0;  // radii that a fold runs at least, unless it is sharp
-constexpr float kAtVertex = 0.01F; // of an edge's length
+constexpr std::size_t kMostForRidges = 16'000; // triangles: sums over neighbourhoods grow with the square
+constexpr int kMostSteps = 64;                 // of one walk
+constexpr float kFlat = 1e-4F;                 // radians: what turns less is no part of a fold
+constexpr float kOwnShare = 0.75F;             // an edge that does this much of the turning is a fold by itself
+constexpr float kSharp = 0.5F;                 // radians of turning at one edge, at which a walk ends
+constexpr double kShortest = 2.0;              // radii that a fold runs at least, unless it is sharp
+constexpr float kAtVertex = 0.01F;             // of an edge's length
+constexpr int kStraightenings = 6;
+constexpr float kLifted = 0.0004F; // metres, so that a straightened line does not sink into triangles beside its own
 constexpr int kSofteningRounds = 8;
 
 std::vector<std::uint32_t> placesOf(const std::vector<glm::vec3>& positions) {
@@ -65,6 +68,7 @@ CreaseFinder::CreaseFinder(const TriangleMesh& rest) : triangles_(rest.triangles
         for (const Side& side : beside) edgesOf_[side.triangle][side.corner] = static_cast<int>(edges_.size());
         edges_.push_back({a, b, left.triangle, beside[1].triangle});
     }
+    if (triangles_.size() > kMostForRidges) return;
     ridges_ = std::make_unique<const RidgeTracer>(rest.positions, triangles_, places_, edges_,
                                                   static_cast<float>(kRadius), kSharp);
 }
@@ -104,9 +108,10 @@ public:
         return away(static_cast<int>(edge), e.left, middle, inwards(edge, e.left)) +
                away(static_cast<int>(edge), e.right, middle, inwards(edge, e.right));
     }
-    /// The turning on both sides of a line through a triangle.
-    [[nodiscard]] float across(std::uint32_t triangle, const glm::vec3& at, const glm::vec3& along) const {
-        const glm::vec3 out = unit(glm::cross(turning_.normals[triangle], along));
+    /// The turning from a place in a triangle in a direction and in the opposite one.
+    [[nodiscard]] float across(std::uint32_t triangle, const glm::vec3& at, const glm::vec3& direction) const {
+        const glm::vec3& normal = turning_.normals[triangle];
+        const glm::vec3 out = unit(direction - glm::dot(direction, normal) * normal);
         return away(-1, triangle, at, out) + away(-1, triangle, at, -out);
     }
 
@@ -172,6 +177,16 @@ std::vector<float> CreaseFinder::turningAround(const Turning& turning) const {
     return sums;
 }
 
+// An edge that is turned against a bend crosses little of it: what its triangles turn at their other edges tells.
+float CreaseFinder::turningBeside(const Turning& turning, std::size_t edge) const {
+    float sum = std::abs(turning.angles[edge]);
+    for (const std::uint32_t triangle : {edges_[edge].left, edges_[edge].right})
+        for (int k = 0; k < 3; ++k)
+            if (const int other = edgesOf_[triangle][k]; other >= 0 && other != static_cast<int>(edge))
+                sum += std::abs(turning.angles[static_cast<std::size_t>(other)]);
+    return sum;
+}
+
 std::vector<float> CreaseFinder::addEdges(const Turning& turning, float threshold, std::vector<Piece>& pieces) const {
     std::vector<float> soft = turning.angles;
     const std::vector<float> sums = turningAround(turning);
@@ -180,6 +195,7 @@ std::vector<float> CreaseFinder::addEdges(const Turning& turning, float threshol
         if (!(std::abs(own) > kFlat) || std::abs(own) < kOwnShare * std::abs(sums[e])) continue;
         const float angle = std::abs(own) > std::abs(sums[e]) ? own : sums[e];
         const bool sharp = std::abs(own) > kSharp;
+        if (!sharp && std::abs(own) < kOwnShare * turningBeside(turning, e)) continue;
         if (sharp || std::abs(angle) >= threshold) soft[e] = 0.0F;
         if (std::abs(angle) < threshold) continue;
         const auto [a, b, left, right] = edges_[e];
@@ -195,10 +211,10 @@ std::vector<float> CreaseFinder::addEdges(const Turning& turning, float threshol
 
 void CreaseFinder::addRidges(const Turning& turning, std::span<const float> soft, float threshold,
                              std::vector<Piece>& pieces) const {
+    if (!ridges_) return;
     const Walk walk(*this, turning, soft);
     for (const RidgePiece& ridge : ridges_->trace(turning.positions, turning.normals, soft)) {
-        const glm::vec3 way = ridge.ends[1] - ridge.ends[0];
-        const float angle = walk.across(ridge.triangle, 0.5F * (ridge.ends[0] + ridge.ends[1]), way);
+        const float angle = walk.across(ridge.triangle, 0.5F * (ridge.ends[0] + ridge.ends[1]), ridge.across);
         if (std::abs(angle) < threshold) continue;
         Piece piece{{ridge.ends, {}, {}, Angle::radians(angle)}, {}, false};
         piece.crease.normals.fill(turning.normals[ridge.triangle]);
@@ -214,12 +230,39 @@ void CreaseFinder::addRidges(const Turning& turning, std::span<const float> soft
     }
 }
 
+// Lines through coarse triangles are crooked: each end goes halfway to the middle of those that it is joined to.
+void CreaseFinder::straighten(std::span<Piece> ridges) {
+    struct Place {
+        glm::vec3 at{0.0F}, sum{0.0F};
+        float count = 0.0F;
+    };
+    std::map<std::uint32_t, Place> places;
+    for (const Piece& piece : ridges)
+        for (std::size_t k = 0; k < 2; ++k) places[piece.ends[k]].at = piece.crease.ends[k];
+    for (int round = 0; round < kStraightenings; ++round) {
+        for (auto& [number, place] : places) place.sum = glm::vec3(place.count = 0.0F);
+        for (const Piece& piece : ridges)
+            for (std::size_t k = 0; k < 2; ++k) {
+                Place& place = places[piece.ends[k]];
+                place.sum += places[piece.ends[1 - k]].at;
+                place.count += 1.0F;
+            }
+        for (auto& [number, place] : places) // a line's own ends stay where they are
+            if (place.count > 1.0F) place.at = glm::mix(place.at, place.sum / place.count, 0.5F);
+    }
+    for (Piece& piece : ridges)
+        for (std::size_t k = 0; k < 2; ++k)
+            piece.crease.ends[k] = places[piece.ends[k]].at + kLifted * piece.crease.normals[k];
+}
+
 std::vector<Crease> CreaseFinder::find(std::span<const glm::vec3> positions, Angle threshold) const {
     const Turning turning(*this, positions);
     const auto least = static_cast<float>(threshold.inRadians());
     std::vector<Piece> pieces;
     const std::vector<float> soft = addEdges(turning, least, pieces);
+    const std::size_t edges = pieces.size();
     addRidges(turning, soft, least, pieces);
+    straighten(std::span(pieces).subspan(edges));
     return withoutScraps(pieces);
 }
 

@@ -13,10 +13,9 @@
 namespace lumorph {
 namespace {
 
-constexpr float kSpread = 0.8F; // of the radius: a fold's curvature at its middle is then its angle over two radii
-constexpr float kReach = 2.2F;  // spreads, beyond which a neighbour counts for nothing
-constexpr std::size_t kMostNear = 400; // edges or triangles that are added up for one vertex
-constexpr float kTogether = 0.5F;      // cosine, up to which directions at a triangle's corners belong to one fold
+constexpr float kSpread = 0.8F;   // of the radius: a fold's curvature at its middle is then its angle over two radii
+constexpr float kReach = 2.2F;    // spreads, beyond which a neighbour counts for nothing
+constexpr float kTogether = 0.5F; // cosine, up to which directions at a triangle's corners belong to one fold
 
 glm::vec3 areaOf(std::span<const glm::vec3> positions, const glm::uvec3& t) {
     return 0.5F * glm::cross(positions[t.y] - positions[t.x], positions[t.z] - positions[t.x]);
@@ -70,13 +69,7 @@ public:
                     found.push_back({places_[k].number, std::exp(-0.5F * away * away)});
             }
         }
-        if (found.size() <= kMostNear) return found;
-        // Of a very fine mesh every so many stand for all: their weights are compared with one another alone.
-        const std::size_t stride = found.size() / kMostNear + 1;
-        std::vector<RidgeTracer::Share> some;
-        for (std::size_t k = 0; k < found.size(); k += stride)
-            some.push_back({found[k].of, found[k].weight * static_cast<float>(stride)});
-        return some;
+        return found;
     }
 
 private:
@@ -144,11 +137,13 @@ std::vector<RidgeTracer::Bend> RidgeTracer::bendsOf(std::span<const glm::vec3> p
                                                     std::span<const glm::vec3> normals,
                                                     std::span<const float> angles) const {
     std::vector<Bend> bends(nodes_.size());
+    std::vector<float> areas;
+    for (const glm::uvec3& t : triangles_) areas.push_back(glm::length(areaOf(positions, t)));
     for (std::size_t n = 0; n < nodes_.size(); ++n) {
         glm::vec3 normal(0.0F);
         float area = 0.0F;
         for (const Share& share : nodes_[n].triangles) {
-            const float part = share.weight * glm::length(areaOf(positions, triangles_[share.of]));
+            const float part = share.weight * areas[share.of];
             area += part;
             normal += part * normals[share.of];
         }
@@ -180,7 +175,7 @@ std::vector<RidgeTracer::Bend> RidgeTracer::bendsOf(std::span<const glm::vec3> p
         float area = 0.0F;
         for (const std::uint32_t t : nodes_[n].around) {
             const glm::uvec3& c = triangles_[t];
-            const float part = glm::length(areaOf(positions, c));
+            const float part = areas[t];
             const glm::uvec3& k = nodesOf_[t];
             gradient += part * gradientOn({positions[c.x], positions[c.y], positions[c.z]},
                                           {bends[k.x].most, bends[k.y].most, bends[k.z].most});
@@ -203,7 +198,7 @@ void RidgeTracer::addPiece(std::uint32_t triangle, std::span<const glm::vec3> po
         one.across = -one.across;
         one.growth = -one.growth;
     }
-    RidgePiece piece{triangle, {}, {}, {}, {}};
+    RidgePiece piece{triangle, {}, {}, {}, {}, bend[0].across + bend[1].across + bend[2].across};
     std::size_t count = 0;
     for (std::size_t k = 0; k < 3; ++k) {
         const std::size_t next = (k + 1) % 3;

@@ -22,6 +22,7 @@ struct RidgePiece {
     std::array<std::uint32_t, 2> nearest{}; ///< vertices, of those edges' ends
     std::array<float, 2> parts{};           ///< of the edges' lengths, by which the ends are away from these
     std::array<glm::vec3, 2> ends{};        ///< metres
+    glm::vec3 across{0.0F};                 ///< in which the surface bends most
 };
 
 /// Finds the ridge and valley lines of a surface that deforms: where the larger principal curvature, smoothed, is

@@ -149,15 +149,24 @@ TEST_F(ForecastKept, TheLastOneShowsWhereNoneComes) {
     EXPECT_NEAR(again.age, 7200.0, 5.0);
     EXPECT_THAT(again.problem, HasSubstr("status 503"));
     EXPECT_THROW((void)fetchedForecast(address() + "&longitude=3", 0.5), DeviceError) << "that is another place";
-    // What the service explains is no forecast, and does not replace one.
+    // What the service explains is no forecast, and neither is a network's log-in: they do not replace one.
+    for (const auto& [status, body] :
+         {std::pair{"429 Too Many Requests", R"({"error": true, "reason": "too many have asked"})"},
+          {"200 OK", "<html>log in</html>"}}) {
+        answer(status, body);
+        const CachedForecast refused = fetchedForecast(address(), 0.5);
+        EXPECT_EQ(refused.file, first.file);
+        EXPECT_FALSE(refused.problem.empty());
+    }
     answer("400 Bad Request", R"({"error": true, "reason": "Latitude must be in range"})");
-    EXPECT_THROW((void)ambient::readForecastFile(fetchedForecast(address(), 0.5).file), DataError);
+    EXPECT_THROW((void)ambient::readForecastFile(fetchedForecast(address() + "&latitude=91", 0.5).file), DataError)
+        << "where there is none yet the reason is said";
     EXPECT_EQ(ambient::readForecastFile(first.file).weather.hours().front().temperature, 9.5);
 }
 
 TEST_F(ForecastKept, IsFetchedAgainAndTriedAgainAfterFailures) {
     answer("200 OK", kForecast);
-    ForecastWatch watch(address(), 0.0, {0.05, 0.02, 0.06, 1.0});
+    ForecastWatch watch(address(), true, {0.05, 0.02, 0.06, 1.0});
     EXPECT_FALSE(watch.take()) << "nothing yet, and no waiting for it";
     std::optional<std::string> news;
     const auto comes = [&] { return (news = watch.take()).has_value(); };
@@ -168,15 +177,25 @@ TEST_F(ForecastKept, IsFetchedAgainAndTriedAgainAfterFailures) {
     ASSERT_TRUE(within(3.0, [&] { return watch.failures() >= 3; }));
     (void)watch.take();
     EXPECT_FALSE(watch.take()) << "a failure is no news";
+    answer("429 Too Many Requests", R"({"error": true, "reason": "too many have asked"})");
+    const int before = watch.failures();
+    ASSERT_TRUE(within(3.0, [&] { return watch.failures() >= before + 2; })) << "a refusal is a failure";
+    EXPECT_FALSE(watch.take()) << "and no news either";
     answer("200 OK", kForecast);
     ASSERT_TRUE(within(3.0, comes)) << "after failures it is tried again";
     EXPECT_EQ(watch.failures(), 0);
 }
 
+TEST_F(ForecastKept, AfterAFailureTheFirstTryComesSoon) {
+    answer("200 OK", kForecast);
+    ForecastWatch watch(address(), false, {600.0, 0.02, 600.0, 1.0});
+    EXPECT_TRUE(within(3.0, [&] { return watch.take().has_value(); }));
+}
+
 TEST_F(ForecastKept, AWatchEndsAtOnceWhileAServerIsSilent) {
     QElapsedTimer timer;
     {
-        ForecastWatch watch(address(), 0.0, {0.01, 0.01, 0.01, 30.0});
+        ForecastWatch watch(address(), true, {0.01, 0.01, 0.01, 30.0});
         EXPECT_TRUE(within(3.0, [&] { return asked_.contains("GET"); }));
         timer.start();
     }

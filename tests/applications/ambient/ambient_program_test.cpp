@@ -352,6 +352,13 @@ TEST(AmbientProgram, ALaterForecastTakesThePlaceOfTheLastAndItsAgeIsSaid) {
     EXPECT_EQ(until(21.5), 21.5);
     EXPECT_LT(program.forecastAge(), 60.0);
     EXPECT_EQ(program.view().cards.front().weather.temperature, 21.5) << "cards too";
+    EXPECT_LT(std::abs(program.view().utc - 1'782'864'000.0), 100'000.0) << "its own days are shown, July 1st";
+}
+
+TEST(AmbientProgram, WhatNobodyFetchesGetsNoOlder) {
+    AmbientProgram program(1, constant(WeatherHour{}));
+    Visit(program).frames(5.0);
+    EXPECT_EQ(program.forecastAge(), 0.0);
 }
 
 TEST(AmbientProgram, TheRealClockIsShownAndReturnedTo) {

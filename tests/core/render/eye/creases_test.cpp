@@ -78,6 +78,62 @@ TEST(Creases, OfAStripAreWhereItFolds) {
     }
 }
 
+/// A sheet of 0.12 x 0.12 m in triangles of about 6 mm, none like another, bent by `degrees` over an arc of `arc`
+/// metres along a line through its middle, which lies 25 degrees off the x axis. Second: the same, flat.
+std::pair<TriangleMesh, TriangleMesh> obliqueBend(double degrees, double arc) {
+    constexpr int kSide = 21;
+    const double lineTurn = 25.0 * std::numbers::pi / 180.0, turn = degrees * std::numbers::pi / 180.0;
+    const glm::dvec2 along(std::cos(lineTurn), std::sin(lineTurn)), across(-along.y, along.x);
+    TriangleMesh bent, flat;
+    for (int j = 0; j < kSide; ++j)
+        for (int i = 0; i < kSide; ++i) {
+            const glm::dvec2 shift(std::sin(12.9898 * i + 78.233 * j), std::sin(39.346 * i + 11.135 * j));
+            const bool inside = i > 0 && j > 0 && i + 1 < kSide && j + 1 < kSide;
+            const glm::dvec2 at = 0.006 * (glm::dvec2(i - 10, j - 10) + (inside ? 0.3 : 0.0) * shift);
+            const double way = glm::dot(at, across), half = 0.5 * arc, radius = arc / turn;
+            // Straight, then round, then straight.
+            const double round = glm::clamp(way, -half, half) + half, angle = round / radius;
+            const double before = std::min(way + half, 0.0), after = std::max(way - half, 0.0);
+            const glm::dvec2 place(before + radius * std::sin(angle) + after * std::cos(turn),
+                                   radius * (1.0 - std::cos(angle)) + after * std::sin(turn));
+            const glm::dvec2 plane = glm::dot(at, along) * along + (place.x - half) * across;
+            flat.positions.emplace_back(at.x, 0.0, -at.y);
+            bent.positions.emplace_back(plane.x, place.y, -plane.y);
+        }
+    for (unsigned j = 0; j + 1 < kSide; ++j)
+        for (unsigned i = 0; i + 1 < kSide; ++i) {
+            const unsigned a = j * kSide + i, b = a + kSide;
+            for (const glm::uvec3& t : (i + j) % 2 == 0 ? std::array<glm::uvec3, 2>{{{a, a + 1, b + 1}, {a, b + 1, b}}}
+                                                        : std::array<glm::uvec3, 2>{{{a, a + 1, b}, {a + 1, b + 1, b}}})
+                flat.triangles.push_back(t);
+        }
+    bent.triangles = flat.triangles;
+    return {bent, flat};
+}
+
+TEST(Creases, RunStraightWhereASmoothSheetBendsMostAcrossItsTriangles) {
+    const double line = 0.12 / std::cos(25.0 * std::numbers::pi / 180.0);
+    for (const auto& [degrees, arc] : {std::pair(30.0, 0.02), {50.0, 0.02}, {-45.0, 0.02}}) {
+        SCOPED_TRACE(degrees);
+        const auto [bent, flat] = obliqueBend(degrees, arc);
+        const auto creases = CreaseFinder(flat).find(bent.positions, Angle::degrees(8.0));
+        double length = 0.0;
+        for (const Crease& crease : creases) {
+            for (const glm::vec3& end : crease.ends) {
+                // Its height above the middle of the arc says on which side of the line it lies, and how far.
+                const double radius = arc / (degrees * std::numbers::pi / 180.0);
+                const double middle = radius * (1.0 - std::cos(0.5 * arc / radius));
+                const double slope = std::sin(0.5 * arc / radius);
+                EXPECT_NEAR(end.y, middle, 0.005 * std::abs(slope) + 0.0005); // less than a triangle
+            }
+            EXPECT_NEAR(std::abs(crease.angle.inDegrees()), std::abs(degrees),
+                        0.4 * std::abs(degrees)); // less at the rim
+            length += glm::distance(crease.ends[0], crease.ends[1]);
+        }
+        EXPECT_NEAR(length, line, 0.1 * line) << "one line, once, from rim to rim";
+    }
+}
+
 TEST(Creases, StripsAreAsWideAsAskedAndFadeIn) {
     const TriangleMesh bent = strip(100, 60.0, 0.0);
     const auto creases = CreaseFinder(bent).find(bent.positions, Angle::degrees(8.0));
