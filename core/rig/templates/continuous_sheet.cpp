@@ -39,8 +39,8 @@ constexpr double kLiftOfWay = 0.8;    ///< lift as a share of the way from the p
 constexpr double kShaftBelow = 0.008; ///< the shaft under the sheet at rest
 constexpr double kShortestArm = 0.016;
 constexpr double kSteepest = 69.0; ///< degrees of an arm at full stroke
-// Of the housing around the sheet's outline. Its walls lean in to the sheet: on a ledge beside walls that light can only
-// graze, a projector would draw a bright line around the device.
+// Of the housing around the sheet's outline. Its walls lean in to the sheet: on a ledge beside walls that light can
+// only graze, a projector would draw a bright line around the device.
 constexpr double kHousingMargin = 0.0005; ///< of its foot
 constexpr double kLedge = 1e-5;           ///< of its top, which parts vertices and no more
 constexpr int kWallShares = 6;
