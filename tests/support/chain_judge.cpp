@@ -17,7 +17,7 @@ namespace {
 
 constexpr glm::ivec2 kEyePicture{1280, 800};
 constexpr int kBallReach = 24;                 // eye pixels to either side of a ball
-constexpr int kBallSpacing = 40;               // projector pixels
+constexpr int kBallSpacing = 46;               // projector pixels, so that no ball shines into the next one's window
 constexpr double kFlat = 0.003, kHigh = 0.035; // metres of balls above the skin
 constexpr double kSkinStep = 0.004;            // metres between places of the skin
 constexpr double kSteepSkin = TruthBench::kSteepestIncidence;

@@ -6,6 +6,7 @@
 
 #include <glm/geometric.hpp>
 
+#include "app/applications/ambient/forms.h"
 #include "app/applications/ambient/parts.h"
 #include "app/applications/demo_items.h"
 #include "core/base/resources.h"

@@ -39,10 +39,7 @@ constexpr double kLiftOfWay = 0.8;    ///< lift as a share of the way from the p
 constexpr double kShaftBelow = 0.008; ///< the shaft under the sheet at rest
 constexpr double kShortestArm = 0.016;
 constexpr double kSteepest = 69.0; ///< degrees of an arm at full stroke
-// Of the housing around the sheet's outline. Its walls lean in to the sheet: on a ledge beside walls that light can
-// only graze, a projector would draw a bright line around the device.
-constexpr double kHousingMargin = 0.0005; ///< of its foot
-constexpr double kLedge = 1e-5;           ///< of its top, which parts vertices and no more
+constexpr double kHousingMargin = 0.0005;
 constexpr int kWallShares = 6;
 constexpr int kWallRows = 4;
 constexpr double kLoadedSpeed = 120.0; ///< degrees a second of a small servo under load
@@ -239,11 +236,10 @@ private:
         border = points;
         addLoop(0);
         std::vector<std::uint32_t> low;
-        const std::vector<glm::dvec2> top = grownHull(border, kLedge), foot = grownHull(border, kHousingMargin);
-        for (std::size_t k = 0; k < top.size(); ++k) {
-            points.push_back(top[k]);
-            vertices.push_back(addVertex({top[k].x, -top[k].y}, device_.housing));
-            low.push_back(addVertex({foot[k].x, -foot[k].y}, 0.0));
+        for (const glm::dvec2& p : grownHull(border, kHousingMargin)) {
+            points.push_back(p);
+            vertices.push_back(addVertex({p.x, -p.y}, device_.housing));
+            low.push_back(addVertex({p.x, -p.y}, 0.0));
         }
         addLoop(border.size());
         const auto high = std::span(vertices).subspan(border.size());
