@@ -10,10 +10,10 @@
 namespace lumorph::ice {
 namespace {
 
-constexpr int kFieldMargin = 4;       ///< samples around a floe
-constexpr int kInlandReach = 4;       ///< samples, of each of two means
-constexpr double kCloses = 0.55;      ///< growth at which young cells meet
-constexpr double kYoungDeep = 0.0030; ///< metres that ice lies lower when it begins: just under the water
+constexpr int kFieldMargin = 4;         ///< samples around a floe
+constexpr std::size_t kInlandReach = 4; ///< samples, of each of two means
+constexpr double kCloses = 0.55;        ///< growth at which young cells meet
+constexpr double kYoungDeep = 0.0030;   ///< metres that ice lies lower when it begins: just under the water
 constexpr std::array kLines{-0.375, -0.125, 0.125, 0.375}; ///< heights within a row at which cells are cut
 
 /// Young ice closes under the surface, as a skin, and then comes up as it gets thicker: cells that met only when they
@@ -79,36 +79,35 @@ void addCell(FloeField& field, Polygon outline, const glm::vec2& values) {
 }
 
 /// Weights 1 4 6 4 1 along x (`stride` 1) or z; ends count as 0, where fields have their margins.
-void smooth(const FloeField& field, std::vector<float>& values, int stride) {
+void smooth(const FloeField& field, std::vector<float>& values, std::size_t stride) {
     const std::vector<float> from = values;
-    const auto reach = static_cast<std::size_t>(2 * stride);
-    const auto s = static_cast<std::size_t>(stride);
+    const std::size_t reach = 2 * stride;
     if (from.size() <= 2 * reach) return;
     for (std::size_t k = reach; k + reach < field.shape.size(); ++k)
-        values[k] = (from[k - 2 * s] + from[k + 2 * s] + 4.0F * (from[k - s] + from[k + s]) + 6.0F * from[k]) / 16.0F;
+        values[k] =
+            (from[k - reach] + from[k + reach] + 4.0F * (from[k - stride] + from[k + stride]) + 6.0F * from[k]) / 16.0F;
 }
 
 /// The mean over `kInlandReach` samples to both sides along a line of `count`, `stride` apart.
-void mean(float* values, int count, std::size_t stride, std::vector<float>& line) {
+void mean(float* values, std::size_t count, std::size_t stride, std::vector<float>& line) {
     constexpr float kShare = 1.0F / (2 * kInlandReach + 1);
-    line.assign(static_cast<std::size_t>(count + 2 * kInlandReach + 1), 0.0F);
-    for (int i = 0; i < count; ++i)
-        line[static_cast<std::size_t>(i + kInlandReach)] = values[stride * static_cast<std::size_t>(i)];
+    line.assign(count + 2 * kInlandReach + 1, 0.0F);
+    for (std::size_t i = 0; i < count; ++i) line[i + kInlandReach] = values[stride * i];
     float sum = 0.0F;
-    for (int i = 0; i < 2 * kInlandReach; ++i) sum += line[static_cast<std::size_t>(i)];
-    for (int i = 0; i < count; ++i) {
-        sum += line[static_cast<std::size_t>(i + 2 * kInlandReach)];
-        values[stride * static_cast<std::size_t>(i)] = kShare * sum;
-        sum -= line[static_cast<std::size_t>(i)];
+    for (std::size_t i = 0; i < 2 * kInlandReach; ++i) sum += line[i];
+    for (std::size_t i = 0; i < count; ++i) {
+        sum += line[i + 2 * kInlandReach];
+        values[stride * i] = kShare * sum;
+        sum -= line[i];
     }
 }
 
 void smoothFar(const FloeField& field, std::vector<float>& values) {
     std::vector<float> line;
-    const auto width = static_cast<std::size_t>(field.size.x);
+    const auto width = static_cast<std::size_t>(field.size.x), height = static_cast<std::size_t>(field.size.y);
     for (int pass = 0; pass < 2; ++pass) {
-        for (int j = 0; j < field.size.y; ++j) mean(&values[field.at(0, j)], field.size.x, 1, line);
-        for (int i = 0; i < field.size.x; ++i) mean(&values[field.at(i, 0)], field.size.y, width, line);
+        for (int j = 0; j < field.size.y; ++j) mean(&values[field.at(0, j)], width, 1, line);
+        for (int i = 0; i < field.size.x; ++i) mean(&values[field.at(i, 0)], height, width, line);
     }
 }
 
@@ -155,7 +154,8 @@ FloeField fieldOf(const IceCover& ice, const Floe& floe) {
     for (std::vector<float>* values : {&field.shape, &field.thickness, &field.lower}) values->assign(count, 0.0F);
     for (Piece& piece : pieces) addCell(field, std::move(piece.outline), piece.values);
     for (std::vector<float>* values : {&field.shape, &field.lower})
-        for (const int stride : {1, field.size.x}) smooth(field, *values, stride);
+        for (const std::size_t stride : {std::size_t{1}, static_cast<std::size_t>(field.size.x)})
+            smooth(field, *values, stride);
     field.inland = field.shape;
     // What melts is cells at a time: a hollow is as wide as a warm place and shows none of their edges.
     for (std::vector<float>* values : {&field.inland, &field.thickness}) smoothFar(field, *values);

@@ -69,6 +69,7 @@ const char* soundOf(IceEvent::Kind kind) {
 
 std::vector<ShowSound> soundsOf(const std::vector<IceEvent>& events) {
     std::vector<ShowSound> sounds;
+    sounds.reserve(events.size());
     for (const IceEvent& event : events)
         sounds.push_back({soundOf(event.kind), event.strength, {glm::dvec3(event.place.x, kIceTop, event.place.y)}});
     return sounds;

@@ -294,6 +294,7 @@ BakeSettings bakeSettings(const SheetDevice& device, SheetQuality quality) {
 ElasticSheet elasticSheetOf(const SheetDevice& device) {
     const std::vector<glm::dvec2> outline = checkedOutline(device.outline, "sheet");
     std::vector<glm::dvec2> page;
+    page.reserve(outline.size());
     for (const glm::dvec2& p : outline) page.push_back(pageOf(p));
     const std::vector<Flap> flaps = layOutFlaps(page, device.bends, {}); // nothing is cut: no slit needs room
     ElasticSheet sheet;
