@@ -160,7 +160,7 @@ void Builder::housesAlong(const Line& street, double width, const Quarter& quart
         }
 }
 
-void Builder::road(Line through, double width, const glm::vec3& color) {
+void Builder::road(const Line& through, double width, const glm::vec3& color) {
     Road made;
     made.line = smoothLine(through, 15.0);
     made.width = width;

@@ -48,7 +48,7 @@ public:
     bool house(const glm::dvec2& at, const glm::dvec2& along, double length, double depth, double storeys);
     /// Both sides of a street: its houses, the wings in their courts, gardens and trees.
     void housesAlong(const Line& street, double width, const Quarter& quarter);
-    void road(Line through, double width, const glm::vec3& color);
+    void road(const Line& through, double width, const glm::vec3& color);
     /// Trees along a road where there is room for them, one after `step` metres.
     void avenue(const Road& road, double step);
     void tree(const glm::dvec2& at, double height);
