@@ -286,7 +286,7 @@ void addTrees(const Map& map, const ViewGround& ground, Primitive& primitive) {
         const glm::ivec2 from(glm::floor(min / cell)), to(glm::floor(max / cell));
         for (int j = from.y; j <= to.y; ++j)
             for (int i = from.x; i <= to.x; ++i) {
-                const auto seed = static_cast<std::uint64_t>(octave + 64);
+                const auto seed = static_cast<std::uint64_t>(octave) + 64;
                 const double chance = chanceOf({i, j}, seed);
                 const glm::dvec2 place = cell * (glm::dvec2(i, j) + glm::dvec2(chance, chanceOf({j, i}, seed + 1)));
                 const glm::dvec2 point = view.pointAt(place);
