@@ -75,7 +75,7 @@ struct Demo {
     /// by `beginProgram` (program_start.h). Throws DataError where a resource is missing, or what was kept is damaged,
     /// and names it; InvalidInput and DataError for what it is told; Cancelled.
     std::unique_ptr<ShowProgram> (*program)(const ProgramStart& start, const Progress& progress) = nullptr;
-    double filmSeconds = 6.0;             ///< of a video of it whose length nobody says: all that it shows by itself
+    double filmSeconds = 6.0;             ///< default length of a video: all that it shows without input
     bool keeps = false;                   ///< its program wants something kept (ShowContent::keepsake)
     std::vector<DemoOption> options = {}; ///< that its program may be told
     bool hostEdits = false;  ///< a host gets the scene of `open`, as where there are steps; visitors get `program`

@@ -35,7 +35,7 @@ void WorldClock::goToNextDay(double hour) {
     utc_ = days_[day_] + 3600.0 * hour;
 }
 
-/// At once where nobody sees a difference, else quickly back.
+/// Sets the time at once where the step is too small to be seen, else returns to it exponentially.
 void WorldClock::returnToNow(double step) {
     const double away = now_() - utc_;
     utc_ += std::abs(away) < kUnseen ? away : away * (1.0 - std::exp(-step / kReturns));

@@ -81,7 +81,7 @@ private:
         return true;
     }
 
-    /// A fan about its middle that has all of the block's rim, so that what lies beside it leaves no seam.
+    /// A triangle fan about the middle with every vertex of the block's rim, so that neighbours share their vertices.
     void addLevel(int left, int near, int right, int far) {
         const std::uint32_t centre = vertexAt((left + right) / 2, (near + far) / 2);
         std::vector<std::uint32_t> around;

@@ -133,7 +133,7 @@ void WaterProgram::listen(const ShowMoment& moment) {
     slosh_.advance(moment.step, visitor_.lean());
 }
 
-/// A tracked hand that comes to the water touches it once; poses that are no numbers are nobody's.
+/// A tracked hand that reaches the water touches it once; poses that are not finite are ignored.
 void WaterProgram::takeHands(const ShowMoment& moment) {
     const glm::dmat4 deviceFromWorld = glm::inverse(glm::dmat4(moment.worldFromDevice));
     std::set<std::string> on;

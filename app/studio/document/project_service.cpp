@@ -67,7 +67,7 @@ const Demo* findDemo(const std::string& name) {
     return found == demos().end() ? nullptr : &*found;
 }
 
-/// What an application is told, and what comes while it runs.
+/// The options of an application, and the feed of what changes while it runs.
 struct Told {
     DemoTold told;
     DemoFeed feed;
