@@ -67,10 +67,29 @@ enum class Cause {
     cameraAdjusts,      ///< "camera_adjusts": a camera sets its exposure by itself
     responseNotRising,  ///< "response_not_rising": a projector makes less light of a higher value
     surfaceUnseen,      ///< "surface_unseen": a camera sees too little of what is lit
+    cameraMoved,        ///< "camera_moved": camera or projector moved between poses
+    repeatedPoses,      ///< "repeated_poses": the same view twice, which checks nothing
+    passedOver,         ///< "passed_over": a file beside the capture that is none of it
+    noisy,              ///< "noisy": the camera's noise hides the patterns
+    bitOrder,           ///< "bit_order": Gray code patterns in another order than said
+    periodCount,        ///< "period_count": stripes have another number of periods than said
+    phaseOrder,         ///< "phase_order": phase steps are exchanged
+    outOfFocus,         ///< "out_of_focus": camera or projector is not in focus
+    boardSize,          ///< "board_size": the board has another number of corners than said
+    boardKind,          ///< "board_kind": another kind of board, or another dictionary, than said
+    handInView,         ///< "hand_in_view": something covers a part of the board in some images
+    foreignImage,       ///< "foreign_image": an image of another pose
+    unlikelyLength,     ///< "unlikely_length": a length that no room has
+    quaternionOrder,    ///< "quaternion_order": one recording has its quaternion's w first
+    inverted,           ///< "inverted": one recording has the world in the body's frame
+    timeUnit,           ///< "time_unit": times in milliseconds, microseconds, nanoseconds or frames
+    turnsInPlace,       ///< "turns_in_place": a body turned about its own origin
+    rowsOutOfOrder,     ///< "rows_out_of_order": rows of a recording stand in another order than their times
+    lensModel,          ///< "lens_model": a lens model that cannot be used, or is not named
 };
 
 /// All of them, in the order above.
-inline constexpr int kCauseCount = static_cast<int>(Cause::surfaceUnseen) + 1;
+inline constexpr int kCauseCount = static_cast<int>(Cause::lensModel) + 1;
 
 [[nodiscard]] std::string_view keyOf(Cause cause);
 /// The cause of a key; empty where there is none.

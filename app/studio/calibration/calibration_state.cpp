@@ -377,6 +377,44 @@ QString causeTitle(Cause cause) {
         return tr("A brighter value makes less light");
     case Cause::surfaceUnseen:
         return tr("The camera sees too little of the light");
+    case Cause::cameraMoved:
+        return tr("Camera or projector moved between poses");
+    case Cause::repeatedPoses:
+        return tr("The same view twice");
+    case Cause::passedOver:
+        return tr("Files were passed over");
+    case Cause::noisy:
+        return tr("The pictures are too noisy");
+    case Cause::bitOrder:
+        return tr("The patterns stand in another order");
+    case Cause::periodCount:
+        return tr("The stripes have another number of periods");
+    case Cause::phaseOrder:
+        return tr("Phase steps are exchanged");
+    case Cause::outOfFocus:
+        return tr("The picture is out of focus");
+    case Cause::boardSize:
+        return tr("The board has another number of corners");
+    case Cause::boardKind:
+        return tr("It is another board");
+    case Cause::handInView:
+        return tr("Something covers the board");
+    case Cause::foreignImage:
+        return tr("An image of another pose");
+    case Cause::unlikelyLength:
+        return tr("A length that no room has");
+    case Cause::quaternionOrder:
+        return tr("Quaternions in two orders");
+    case Cause::inverted:
+        return tr("One recording is inverted");
+    case Cause::timeUnit:
+        return tr("Times in another unit");
+    case Cause::turnsInPlace:
+        return tr("The body turned in place");
+    case Cause::rowsOutOfOrder:
+        return tr("Rows out of order");
+    case Cause::lensModel:
+        return tr("A lens model that cannot be used");
     default:
         return tr("This capture cannot be trusted");
     }
