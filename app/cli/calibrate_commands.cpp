@@ -204,14 +204,15 @@ void procam(const CalibrateArguments& arguments, const Session& session) {
     const auto run = [&] {
         constexpr double kReading = 0.6; // of the whole time
         const Progress progress = session.progress();
-        const std::vector<CapturedView> poses = viewsIn(arguments.folder);
-        report.sights.resize(poses.size());
-        const ReadCapture capture = readPoses(
-            poses, board, order,
+        const CaptureListing listing = listCapture(arguments.folder);
+        report.sights.resize(listing.views.size());
+        ReadCapture capture = readPoses(
+            listing.views, board, order,
             [&](std::size_t index, const ReadPose& pose) {
                 if (!arguments.report.empty()) report.sights[index] = pose.decoded.white;
             },
             progress.part(0.0, kReading));
+        capture.warnings.insert(capture.warnings.begin(), listing.passedOver.begin(), listing.passedOver.end());
         report.observations = capture.views;
         return calibrateCapture(capture, order.projector, {}, progress.part(kReading, 1.0));
     };

@@ -140,6 +140,14 @@ struct AlternativeTransfer {
     template <typename T>
     bool operator()(const T* camera, const T* pose, const T* rig, const T* projector, const T* common, const T* focus,
                     T* error) const {
+        const T still[6] = {T(0.0), T(0.0), T(0.0), T(0.0), T(0.0), T(0.0)};
+        return (*this)(camera, pose, rig, projector, common, focus, still, error);
+    }
+
+    /// `moved`: from the camera's frame of this view to that of those before it.
+    template <typename T>
+    bool operator()(const T* camera, const T* pose, const T* rig, const T* projector, const T* common, const T* focus,
+                    const T* moved, T* error) const {
         T way[3];
         directionOfPixel<T>(refocused(camera, focus).data(), seen.camera.x, seen.camera.y, way[0], way[1]);
         way[2] = T(1.0);
@@ -153,8 +161,10 @@ struct AlternativeTransfer {
         for (int i = 0; i < 3; ++i) // onto the bent sheet
             depth =
                 (extent.height(common, from[0] + depth * along[0], from[1] + depth * along[1]) - from[2]) / along[2];
-        const T inCamera[3] = {depth * way[0], depth * way[1], depth};
-        T inProjector[3];
+        const T seenThere[3] = {depth * way[0], depth * way[1], depth};
+        T inCamera[3], inProjector[3];
+        ceres::AngleAxisRotatePoint(moved, seenThere, inCamera);
+        for (int i = 0; i < 3; ++i) inCamera[i] += moved[3 + i];
         ceres::AngleAxisRotatePoint(rig, inCamera, inProjector);
         for (int i = 0; i < 3; ++i) inProjector[i] += rig[3 + i];
         T x, y;
@@ -185,6 +195,7 @@ struct AlternativeState {
     Common common{};
     std::vector<double> focus; ///< of each view
     Field cameraField{}, projectorField{};
+    PoseVector moved{};   ///< of the camera, in views that are said to have it elsewhere
     double squares = 0.0; ///< of all errors, in standard deviations
 };
 
@@ -195,6 +206,7 @@ struct Freedom {
     bool focus = false;
     bool cameraField = false;
     bool projectorField = false;
+    std::vector<bool> moved{}; ///< views in which the camera stands elsewhere than in the others; empty: none
 };
 
 class AlternativeSolver {
@@ -215,7 +227,7 @@ public:
     }
 
     [[nodiscard]] AlternativeState solve(const Freedom& freedom) const {
-        AlternativeState state{result_.state, {}, std::vector<double>(views_.size(), 0.0), {}, {}, 0.0};
+        AlternativeState state{result_.state, {}, std::vector<double>(views_.size(), 0.0), {}, {}, {}, 0.0};
         // Real lenses have square pixels: what a model has made of other faults is taken back.
         state.bundle.camera[kAspect] = 1.0;
         if (!freedom.projectorAspect) state.bundle.projector[kAspect] = 1.0;
@@ -327,6 +339,14 @@ private:
             seen, extent_, 1.0 / kSigma, {std::sin(c), std::cos(c), std::sin(r), std::cos(r)}, {}, {}};
         double* pose = state.bundle.cameraFromBoard[v].data();
         auto* loss = new ceres::HuberLoss(kRobustLoss);
+        if (!freedom.moved.empty() && freedom.moved[v]) {
+            problem.AddResidualBlock(new ceres::AutoDiffCostFunction<AlternativeTransfer, 2, kLensParameters, 6, 6,
+                                                                     kLensParameters, kCommonParameters, 1, 6>(point),
+                                     loss, state.bundle.camera.data(), pose, state.bundle.projectorFromCamera.data(),
+                                     state.bundle.projector.data(), state.common.data(), &state.focus[v],
+                                     state.moved.data());
+            return;
+        }
         if (!freedom.cameraField && !freedom.projectorField) {
             problem.AddResidualBlock(new ceres::AutoDiffCostFunction<AlternativeTransfer, 2, kLensParameters, 6, 6,
                                                                      kLensParameters, kCommonParameters, 1>(point),
@@ -399,6 +419,7 @@ public:
         tryPicture();
         tryBoard();
         if (views_.size() >= kFewestForFocus) tryFocus();
+        if (views_.size() >= kFewestForFocus) tryMotion();
         if (ripplesOf(order_, PatternAxis::columns) > 0.0) tryGamma();
         std::ranges::sort(all_, std::greater<>(), &Alternative::explained);
         return std::move(all_);
@@ -437,6 +458,9 @@ private:
     static constexpr double kStraight = 0.003;     // skew
     static constexpr double kSquareSquares = 0.003;
     static constexpr double kSteadyFocus = 0.003;
+    static constexpr double kMostFocus = 0.3;
+    static constexpr double kMostTurn = 30.0;    // degrees: more is no bump, the solution was lost
+    static constexpr double kSteadyLight = 0.25; // projector pixels by which a moved camera shifts it
     /// With three poses each may have the focal length that its noise likes, at another distance.
     static constexpr std::size_t kFewestForFocus = 4;
     static constexpr double kFlatBoard = 0.004; // of half its diagonal
@@ -496,10 +520,59 @@ private:
     void tryFocus() {
         const AlternativeState focused = solver_.solve({.focus = true});
         const double spread = spreadOf(focused.focus);
+        if (!(spread < kMostFocus)) return; // no autofocus does that: the solution was lost
         add(Cause::cameraRefocused, focused, spread / kSteadyFocus,
             "the camera's focal length differs by " + number(100.0 * spread, 1) + " % between poses",
             "switch off autofocus and zoom, touch neither between poses, and capture all again",
             views_[changeOf(focused.focus)].name);
+    }
+
+    /// The camera, or the projector, stands elsewhere in one pose, or from one on.
+    void tryMotion() {
+        const std::size_t count = views_.size();
+        AlternativeState best;
+        std::vector<bool> bestMoved;
+        const auto attempt = [&](std::size_t from, std::size_t end) {
+            std::vector<bool> moved(count, false);
+            std::fill(moved.begin() + static_cast<std::ptrdiff_t>(from),
+                      moved.begin() + static_cast<std::ptrdiff_t>(end), true);
+            AlternativeState state = solver_.solve({.moved = moved});
+            progress_.throwIfCancelled();
+            if (bestMoved.empty() || state.squares < best.squares)
+                best = std::move(state), bestMoved = std::move(moved);
+        };
+        for (std::size_t v = 0; v < count; ++v) attempt(v, v + 1);
+        for (std::size_t v = 2; v + 2 <= count; ++v) attempt(v, count);
+        const double shift = shiftOf(best, bestMoved);
+        const auto first = static_cast<std::size_t>(std::ranges::find(bestMoved, true) - bestMoved.begin());
+        const bool isLater = std::ranges::count(bestMoved, true) > 1;
+        const double turn = std::hypot(best.moved[0], best.moved[1], best.moved[2]) * 180.0 / std::numbers::pi;
+        const double apart = std::hypot(best.moved[3], best.moved[4], best.moved[5]);
+        if (!(turn < kMostTurn)) return;
+        add(Cause::cameraMoved, best, shift / kSteadyLight,
+            std::string("camera or projector stands elsewhere ") + (isLater ? "from this pose on" : "in this pose") +
+                ", turned by " + number(turn, 2) + " degrees and " + number(apart, 1) + " units away: light moves by " +
+                number(shift, 1) + " pixels",
+            isLater ? "tighten both, and capture the poses before or after it again"
+                    : "leave this pose out; tighten both, and capture it again",
+            views_[first].name);
+    }
+
+    /// How far a moved camera shifts the light in the projector, root mean square over the views that have it, pixels.
+    [[nodiscard]] double shiftOf(const AlternativeState& state, const std::vector<bool>& moved) const {
+        const Rigid motion = Rigid::exp(state.moved);
+        std::vector<cv::Point2d> shifts;
+        for (std::size_t v = 0; v < views_.size(); ++v) {
+            if (!moved[v]) continue;
+            const Rigid pose = Rigid::exp(state.bundle.cameraFromBoard[v]);
+            for (const cv::Point3d& point : views_[v].corners.board) {
+                const glm::dvec3 at = pose * glm::dvec3(point.x, point.y, point.z);
+                const glm::dvec3 there = motion * at;
+                shifts.push_back(projectorPixel({there.x, there.y, there.z}, state.bundle) -
+                                 projectorPixel({at.x, at.y, at.z}, state.bundle));
+            }
+        }
+        return rmsOf(shifts);
     }
 
     void tryGamma() {
@@ -600,7 +673,9 @@ std::optional<Explanation> explanationOf(const std::vector<ViewObservations>& vi
     CauseTrials trials(views, result, order, progress);
     const std::vector<Alternative> all = trials.all();
     const auto told = [](const Alternative& by) {
-        return Explanation{{by.cause, by.view, "", by.words, by.remedy}, by.amount >= kRefused};
+        // What moved between poses is no quality of a device, but two set-ups in one.
+        const double refused = by.cause == Cause::cameraMoved ? 1.0 : kRefused;
+        return Explanation{{by.cause, by.view, "", by.words, by.remedy}, by.amount >= refused};
     };
     for (const Alternative& by : all) // the one that explains most first
         if (by.amount >= 1.0 && by.explained >= kExplains) return told(by);

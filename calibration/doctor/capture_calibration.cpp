@@ -1,7 +1,12 @@
 #include "calibration/doctor/capture_calibration.h"
 
+#include <algorithm>
+#include <array>
 #include <atomic>
+#include <cmath>
+#include <cstdio>
 #include <iterator>
+#include <limits>
 #include <optional>
 #include <utility>
 
@@ -9,6 +14,8 @@
 
 #include "calibration/decode/capture_folder.h"
 #include "calibration/doctor/alternatives.h"
+#include "calibration/doctor/phase_check.h"
+#include "calibration/doctor/repeated_poses.h"
 #include "calibration/doctor/sequence_check.h"
 #include "calibration/doctor/stripe_check.h"
 #include "calibration/doctor/view_check.h"
@@ -119,39 +126,79 @@ ProcamCalibration solveUnexplained(const ReadCapture& capture, cv::Size projecto
 
 } // namespace
 
+namespace {
+
+bool isGrayCode(const CaptureOrder& order) {
+    return std::ranges::none_of(order.images,
+                                [](const PatternImage& image) { return std::holds_alternative<PhaseStep>(image); });
+}
+
+/// What the pictures of a pose suffer from and may still be read with: named where something else then fails.
+class PoseTroubles {
+public:
+    void add(std::optional<Finding> finding) {
+        if (finding) all_.push_back(std::move(*finding));
+    }
+    void throwIf(const std::optional<Finding>& finding) const {
+        if (finding) throw CaptureRefused(all_.empty() ? *finding : all_.front());
+    }
+    std::vector<Finding> take() { return std::move(all_); }
+
+private:
+    std::vector<Finding> all_;
+};
+
+} // namespace
+
 ReadPose readPose(const CapturedView& view, const std::vector<cv::Mat>& images, const CalibrationBoard& board,
                   const CaptureOrder& order) {
-    const auto throwIf = [](const std::optional<Finding>& finding) {
-        if (finding) throw CaptureRefused(*finding);
-    };
-    throwIf(checkSequence(view, images, order));
-    throwIf(checkStripes(view, images, order));
+    PoseTroubles troubles;
+    const auto sequence = checkSequence(view, images, order);
+    // Noise averages out, and a Gray code has its edges where pattern and inverse are alike under any curve.
+    const bool isBearable = sequence && (sequence->cause == Cause::noisy ||
+                                         (sequence->cause == Cause::projectorGamma && isGrayCode(order)));
+    if (sequence && !isBearable) throw CaptureRefused(*sequence);
+    troubles.add(sequence);
+    troubles.throwIf(checkStripes(view, images, order));
+    troubles.throwIf(checkPhases(view, images, order));
     DecodedView decoded = decodeView(images, order);
+    troubles.add(checkDark(view.name, decoded));
+    troubles.add(checkFocus(view.name, decoded, images, order));
     const std::optional<BoardPoints> found = findBoard(decoded.white, board);
-    throwIf(checkProjectorSize(view.name, decoded, order.projector, found ? found->seen : std::vector<cv::Point2d>()));
-    if (!found) throwIf(checkLight(view.name, decoded));
+    troubles.throwIf(checkBoardSize(view.name, decoded.white, board, found.has_value()));
+    const auto bright = checkLight(view.name, decoded);
+    if (found)
+        if (const auto moved = checkSteadiness(view, images, order, decoded.white, found->seen))
+            troubles.throwIf(bright ? bright : moved); // what is cut off has no corners to compare
+    troubles.throwIf(
+        checkProjectorSize(view.name, decoded, order.projector, found ? found->seen : std::vector<cv::Point2d>()));
+    if (!found) troubles.throwIf(bright);
     if (!found)
-        throw CaptureRefused({Cause::boardNotFound, view.name, "", "the board cannot be found under white light",
-                              "check --board, and that all of the board is lit, sharp and in the picture"});
-    throwIf(checkSteadiness(view, images, order, found->seen));
+        troubles.throwIf(Finding{Cause::boardNotFound, view.name, "", "the board cannot be found under white light",
+                                 "check --board, and that all of the board is lit, sharp and in the picture"});
     ReadPose read{{view.name, *found, projectorPointsOn(decoded, found->seen, kPointsWanted)}, std::move(decoded), {}};
-    if (const auto exposure = checkExposure(view.name, read.decoded, found->seen)) read.warnings.push_back(*exposure);
     if (read.observations.projector.size() < kFewestPoints && isReadableInverted(images, order, found->seen))
         throw CaptureRefused({Cause::inverseSwapped, view.name, "", "patterns and their inverses are exchanged",
                               "name the images in the order pattern, inverse, or say so in an order file"});
     if (read.observations.projector.size() < kFewestPoints)
-        throw CaptureRefused({Cause::boardUnlit, view.name, "", "the patterns can be read on too little of the board",
-                              "bring the board into the projector's light, expose for longer, darken the room"});
+        troubles.throwIf(Finding{Cause::boardUnlit, view.name, "",
+                                 "the patterns can be read on too little of the board",
+                                 "bring the board into the projector's light, expose for longer, darken the room"});
+    troubles.add(checkExposure(view.name, read.decoded, found->seen));
+    read.warnings = troubles.take();
     return read;
 }
 
 ReadCapture readPoses(const std::vector<CapturedView>& poses, const CalibrationBoard& board, const CaptureOrder& order,
                       const PoseReader& onRead, const Progress& progress, Sight sight) {
     if (poses.empty()) throw InvalidInput("poses", "there is none", "give at least one");
-    if (const auto wrong = checkCounts(poses, order)) throw CaptureRefused(*wrong);
-    std::vector<FolderPose> read = readAll(poses, board, order, onRead, progress, sight);
-    requireSameSize(read);
+    std::vector<CapturedView> known = poses;
     ReadCapture capture;
+    for (CapturedView& pose : known)
+        if (auto dropped = dropStrangers(pose, order.images.size())) capture.warnings.push_back(std::move(*dropped));
+    if (const auto wrong = checkCounts(known, order)) throw CaptureRefused(*wrong);
+    std::vector<FolderPose> read = readAll(known, board, order, onRead, progress, sight);
+    requireSameSize(read);
     capture.order = order;
     capture.camera = read.front().size;
     for (FolderPose& view : read) {
@@ -161,21 +208,123 @@ ReadCapture readPoses(const std::vector<CapturedView>& poses, const CalibrationB
     return capture;
 }
 
+namespace {
+
+/// Sizes of pictures that projectors have, and whole parts of them.
+bool isUsualSize(cv::Size size) {
+    constexpr std::array<std::array<int, 2>, 36> kUsual = {
+        {{640, 360},   {640, 400},   {640, 480},   {800, 480},   {800, 600},   {848, 480},   {854, 480},   {608, 684},
+         {684, 608},   {912, 1140},  {1140, 912},  {960, 540},   {1024, 600},  {1024, 768},  {1152, 864},  {1280, 720},
+         {1280, 768},  {1280, 800},  {1280, 960},  {1280, 1024}, {1360, 768},  {1366, 768},  {1400, 1050}, {1440, 900},
+         {1600, 900},  {1600, 1200}, {1680, 1050}, {1824, 1140}, {1920, 1080}, {1920, 1200}, {2048, 1080}, {2048, 1536},
+         {2560, 1440}, {2560, 1600}, {3840, 2160}, {4096, 2160}}};
+    return std::ranges::any_of(kUsual, [size](const auto& usual) {
+        for (const int parts : {1, 2, 3, 4}) // as tests and previews have them
+            if (parts * size.width == usual[0] && parts * size.height == usual[1]) return true;
+        return false;
+    });
+}
+
+std::string oneDigit(double value) {
+    char text[48];
+    std::snprintf(text, sizeof(text), "%.1f", value);
+    return text;
+}
+
+/// Sizes and lengths that may be right and are seldom so: what is said of them nothing in the pictures contradicts.
+void warnOfUnlikely(const ReadCapture& capture, cv::Size projector, ProcamCalibration& result) {
+    double column = 0.0;
+    double row = 0.0;
+    double square = std::numeric_limits<double>::infinity();
+    for (const ViewObservations& view : capture.views) {
+        for (const ProjectorPoint& point : view.projector) {
+            column = std::max(column, point.projector.x);
+            row = std::max(row, point.projector.y);
+        }
+        for (std::size_t i = 0; i + 1 < view.corners.board.size(); ++i)
+            square = std::min(square, cv::norm(view.corners.board[i] - view.corners.board[i + 1]));
+    }
+    if (!isUsualSize(projector))
+        result.warnings.push_back(
+            {Cause::projectorSize, "", "",
+             std::to_string(projector.width) + " x " + std::to_string(projector.height) +
+                 " is no usual size of a projector; what was decoded on the boards ends at column " +
+                 std::to_string(std::lround(column)) + " and row " + std::to_string(std::lround(row)) +
+                 ", which does not tell",
+             "check the size that the patterns were made for"});
+    constexpr double kSmallest = 1.0, kLargest = 1000.0, kNearest = 1.0; // mm, as boards are named
+    if (square < kSmallest || square > kLargest)
+        result.warnings.push_back({Cause::unlikelyLength, "", "",
+                                   "points of the board are " + oneDigit(square) + " mm apart",
+                                   "give the board's lengths in millimetres: all others follow them"});
+    const PoseVector& rig = result.projectorFromCamera;
+    const double apart = std::hypot(rig[3], rig[4], rig[5]);
+    if (apart < kNearest)
+        result.warnings.push_back({Cause::unlikelyLength, "", "",
+                                   "the projector would stand " + oneDigit(apart) + " mm from the camera",
+                                   "check the board's lengths, in millimetres"});
+}
+
+/// What single poses suffer from explains what no model fits.
+void throwTrouble(const ReadCapture& capture, const Finding& finding) {
+    constexpr std::array kDustbins = {Cause::modelDoesNotFit, Cause::strangeLens, Cause::projectorSize,
+                                      Cause::boardWarped,     Cause::keystone,    Cause::squareSize};
+    constexpr std::array kTroubles = {Cause::outOfFocus, Cause::noisy, Cause::exposureDrifts, Cause::projectorGamma};
+    if (std::ranges::find(kDustbins, finding.cause) == kDustbins.end()) return;
+    for (const Finding& warning : capture.warnings)
+        if (std::ranges::find(kTroubles, warning.cause) != kTroubles.end()) throw CaptureRefused(warning);
+}
+
+} // namespace
+
 ProcamCalibration calibrateCapture(const ReadCapture& capture, cv::Size projector, const SolveOptions& options,
                                    const Progress& progress) {
+    const bool hasPhases = !isGrayCode(capture.order);
+    if (hasPhases)
+        if (const auto turned = checkTurned(capture.views)) throw CaptureRefused(*turned);
     if (const auto mirrored = checkMirrored(capture.views)) throw CaptureRefused(*mirrored);
-    ProcamCalibration result = solveUnexplained(capture, projector, options, progress.part(0.0, 0.8));
+    const std::vector<std::size_t> first = firstLike(capture.views);
+    ReadCapture distinct = capture;
+    distinct.views.clear();
+    std::vector<Finding> repeated;
+    for (std::size_t v = 0; v < first.size(); ++v) {
+        if (first[v] == v)
+            distinct.views.push_back(capture.views[v]);
+        else
+            repeated.push_back({Cause::repeatedPoses, capture.views[v].name, "",
+                                "shows the same view as " + capture.views[first[v]].name + ": both count once",
+                                "move and tilt the board between poses"});
+    }
+    constexpr std::size_t kFewestViews = 3;
+    if (!repeated.empty() && distinct.views.size() < kFewestViews) throw CaptureRefused(repeated.front());
     CaptureOrder order = capture.order;
     order.projector = projector;
-    explain(capture.views, order, result, progress.part(0.8, 1.0));
+    ProcamCalibration result;
+    try {
+        result = solveUnexplained(distinct, projector, options, progress.part(0.0, 0.8));
+        explain(distinct.views, order, result, progress.part(0.8, 1.0));
+    } catch (const CaptureRefused& refused) {
+        throwTrouble(capture, refused.finding());
+        throw;
+    }
+    repeatFor(capture.views, first, result);
+    result.warnings.insert(result.warnings.end(), repeated.begin(), repeated.end());
     result.warnings.insert(result.warnings.end(), capture.warnings.begin(), capture.warnings.end());
+    warnOfUnlikely(capture, projector, result);
+    if (hasPhases && isUpsideDown(capture.views))
+        result.warnings.push_back({Cause::phaseOrder, "", "",
+                                   "the projector would hang upside down beside the camera: it does, or the steps of "
+                                   "all phases stand in another order",
+                                   "nothing where it hangs so; else say the order of the steps in an order file"});
     return result;
 }
 
 ProcamCalibration calibrateProcamFolder(const std::filesystem::path& folder, const CalibrationBoard& board,
                                         const CaptureOrder& order, const SolveOptions& options,
                                         const Progress& progress) {
-    const ReadCapture capture = readPoses(viewsIn(folder), board, order, {}, progress.part(0.0, kReading));
+    const CaptureListing listing = listCapture(folder);
+    ReadCapture capture = readPoses(listing.views, board, order, {}, progress.part(0.0, kReading));
+    capture.warnings.insert(capture.warnings.begin(), listing.passedOver.begin(), listing.passedOver.end());
     return calibrateCapture(capture, order.projector, options, progress.part(kReading, 1.0));
 }
 

@@ -6,6 +6,7 @@
 #include <cstdint>
 
 #include "calibration/decode/pattern_decoder.h"
+#include "calibration/doctor/uneven_light.h"
 
 namespace lumorph {
 
@@ -249,6 +250,15 @@ std::optional<Finding> checkFlatFields(const SampledStack& stack, const Captured
     if (stack.areIdentical(white, black))
         return Finding{Cause::doubledImage, view.name, nameIn(view, std::max(white, black)),
                        "is the same image as white", kCaptureAgain};
+    constexpr double kWhiteAndBlack = 0.85; // of the light
+    for (int one = 0; one < static_cast<int>(order.images.size()); ++one)
+        for (const int other : {one - 1, one + 1})
+            if (other >= 0 && other < static_cast<int>(order.images.size()) &&
+                stack.brighterBy(one, other) > kWhiteAndBlack)
+                return Finding{Cause::wrongOrder, view.name, nameIn(view, one),
+                               "white and black are seen here, where '" +
+                                   wordsOf(order.images[static_cast<std::size_t>(one)]) + "' was said",
+                               "put the images into the order of the patterns, or say theirs in an order file"};
     return Finding{Cause::lateFrame, view.name, nameIn(view, std::max(white, black)),
                    "white and black are about equally bright",
                    "let the projector settle longer before each shot, and capture this pose again"};
@@ -276,12 +286,16 @@ std::optional<Finding> checkSequence(const CapturedView& view, const std::vector
     if (!stack.isLit()) return std::nullopt; // told when nothing can be decoded
     for (int set = 0; set < stack.setCount(); ++set) {
         if (stack.isEven(set, 0)) continue;
+        if (auto cause = causeInGreys(view, images, order)) return cause; // what all images have: it can be taken back
         const Finding broken = brokenFrom(stack, view, set);
-        if (broken.cause != Cause::wrongOrder || stack.clippedShare() < kMostClipped) return broken;
-        return Finding{Cause::clipped, view.name, "",
-                       std::to_string(static_cast<int>(std::lround(100.0 * stack.clippedShare()))) +
-                           " % of what the projector lights are overexposed, so that the patterns are lost",
-                       "expose for less time until white is below 250 of 255, and capture this pose again"};
+        if (broken.cause != Cause::wrongOrder) return broken;
+        if (stack.clippedShare() >= kMostClipped)
+            return Finding{Cause::clipped, view.name, "",
+                           std::to_string(static_cast<int>(std::lround(100.0 * stack.clippedShare()))) +
+                               " % of what the projector lights are overexposed, so that the patterns are lost",
+                           "expose for less time until white is below 250 of 255, and capture this pose again"};
+        if (auto cause = causeInImages(view, images, order)) return cause;
+        return broken;
     }
     return checkFlatFields(stack, view, order);
 }

@@ -12,6 +12,7 @@ constexpr int kStep = 2;                    // pixels between the two sides of a
 constexpr float kClear = 0.25F;             // of the light: a stripe's side that is no edge
 constexpr float kLeastRangeOfPixel = 16.0F; // grey levels
 constexpr double kResolvedShare = 0.6;
+constexpr int kLitLine = 40; // pixels of a line that are lit: enough to count it
 constexpr double kFewestEdges = 60.0;
 
 /// One bit of an axis, and what its stripes look like.
@@ -20,6 +21,7 @@ struct BitStripes {
     int pattern = 0, inverse = 0;    ///< images
     double across = 0.0, down = 0.0; ///< edges met walking along rows, and along columns
     double strength = 0.0;           ///< mean contrast, as a share of the light
+    double lines = 0.0;              ///< edges of its own, whatever other bits do there, a lit line that is walked
 
     [[nodiscard]] double edges() const { return across + down; }
 };
@@ -44,10 +46,17 @@ public:
         std::ranges::sort(bits_, std::greater<>(), &BitStripes::bit);
         if (bits_.size() < 3) return;
         const cv::Size size = images.front().size();
-        cv::Mat coarsest; // shows all the light
-        cv::absdiff(image(bits_[0].pattern), image(bits_[0].inverse), coarsest);
-        coarsest.convertTo(range_, CV_32F);
-        dropUnresolved();
+        cv::Mat1b most(size, 0); // some bit shows all the light, in whatever order they are
+        for (const BitStripes& bit : bits_) {
+            cv::Mat here;
+            cv::absdiff(image(bit.pattern), image(bit.inverse), here);
+            cv::max(most, here, most);
+        }
+        most.convertTo(range_, CV_32F);
+        for (BitStripes& bit : bits_) measure(bit);
+        all_ = bits_;
+        const auto weak = std::ranges::find_if(bits_, [](const BitStripes& b) { return b.strength < kResolvedShare; });
+        bits_.erase(weak, bits_.end());
         for (int y = 0; y < size.height; y += kRows)
             for (int x = 0; x + kStep < size.width; ++x) look({x, y}, {x + kStep, y}, &BitStripes::across);
         for (int x = 0; x < size.width; x += kRows)
@@ -56,6 +65,8 @@ public:
 
     /// The coarsest first, without those that are not resolved.
     [[nodiscard]] const std::vector<BitStripes>& bits() const { return bits_; }
+    /// With those.
+    [[nodiscard]] const std::vector<BitStripes>& all() const { return all_; }
     [[nodiscard]] const std::vector<StripeEdge>& edges() const { return edges_; }
 
 private:
@@ -66,20 +77,33 @@ private:
         return static_cast<float>(image(bit.pattern)(at)) - static_cast<float>(image(bit.inverse)(at));
     }
 
-    void dropUnresolved() {
-        for (BitStripes& bit : bits_) {
-            double sum = 0.0;
-            double count = 0.0;
-            for (int y = 0; y < range_.rows; y += kRows)
-                for (int x = 0; x < range_.cols; x += kRows) {
-                    if (range_(y, x) < kLeastRangeOfPixel) continue;
-                    sum += std::min(1.0F, std::abs(difference(bit, {x, y})) / range_(y, x));
-                    count += 1.0;
-                }
-            bit.strength = count > 0.0 ? sum / count : 0.0;
+    /// How strong a bit's stripes are, and how many.
+    void measure(BitStripes& bit) const {
+        double sum = 0.0;
+        double count = 0.0;
+        double lines = 0.0;
+        for (int y = 0; y < range_.rows; y += kRows) {
+            int lit = 0;
+            for (int x = 0; x < range_.cols; ++x) {
+                if (range_(y, x) < kLeastRangeOfPixel) continue;
+                const float share = difference(bit, {x, y}) / range_(y, x);
+                if (x % kRows == 0) sum += std::min(1.0F, std::abs(share)), count += 1.0;
+                ++lit;
+                if (x + kStep >= range_.cols || range_(y, x + kStep) < kLeastRangeOfPixel) continue;
+                const float next = difference(bit, {x + kStep, y}) / range_(y, x + kStep);
+                bit.lines += std::abs(share) > kClear && std::abs(next) > kClear && (share > 0.0F) != (next > 0.0F);
+            }
+            lines += lit > kLitLine;
         }
-        const auto weak = std::ranges::find_if(bits_, [](const BitStripes& b) { return b.strength < kResolvedShare; });
-        bits_.erase(weak, bits_.end());
+        for (int x = 0; x < range_.cols; x += kRows)
+            for (int y = 0; y + kStep < range_.rows; ++y) {
+                if (range_(y, x) < kLeastRangeOfPixel || range_(y + kStep, x) < kLeastRangeOfPixel) continue;
+                const float share = difference(bit, {x, y}) / range_(y, x);
+                const float next = difference(bit, {x, y + kStep}) / range_(y + kStep, x);
+                bit.lines += std::abs(share) > kClear && std::abs(next) > kClear && (share > 0.0F) != (next > 0.0F);
+            }
+        bit.strength = count > 0.0 ? sum / count : 0.0;
+        bit.lines /= std::max(1.0, kStep * lines); // each edge is met by so many pairs
     }
 
     /// Two pixels near one another, if they differ in one bit alone.
@@ -103,7 +127,7 @@ private:
 
     const std::vector<cv::Mat>& images_;
     cv::Mat1f range_;
-    std::vector<BitStripes> bits_;
+    std::vector<BitStripes> bits_, all_;
     std::vector<StripeEdge> edges_;
 };
 
@@ -125,6 +149,32 @@ std::optional<Finding> wrongDirection(const std::vector<BitStripes>& bits, const
                            wordsOf(order.images[static_cast<std::size_t>(bit.pattern)]) + "'",
                        "put the images into the order of the patterns, or correct the order file"};
     }
+    return std::nullopt;
+}
+
+/// A finer bit of a Gray code has twice as many stripes as the next coarser one, and blur takes the finest first.
+std::optional<Finding> wrongFineness(const std::vector<BitStripes>& bits, const CapturedView& view,
+                                     const CaptureOrder& order) {
+    constexpr double kSureStrength = 0.75, kFewestLines = 3.0, kFewer = 0.6;
+    const auto words = [&](const BitStripes& bit) {
+        return "'" + wordsOf(order.images[static_cast<std::size_t>(bit.pattern)]) + "'";
+    };
+    for (std::size_t coarse = 0; coarse < bits.size(); ++coarse)
+        for (std::size_t fine = coarse + 1; fine < bits.size(); ++fine) {
+            const BitStripes& one = bits[coarse];
+            const BitStripes& other = bits[fine];
+            const bool isBlurred = one.strength < kResolvedShare && other.strength > kSureStrength;
+            const bool hasFewer = one.strength > kSureStrength && other.strength > kSureStrength &&
+                                  one.lines > kFewestLines && other.lines < kFewer * one.lines;
+            if (!isBlurred && !hasFewer) continue;
+            const bool isReversed = coarse == 0 && bits.back().lines < 0.5 * kFewestLines && bits.size() > 4 &&
+                                    bits[1].lines > bits[bits.size() - 2].lines;
+            return Finding{Cause::bitOrder, view.name, fileOf(view, one.pattern),
+                           isReversed ? "the bits stand in reverse: the finest stripes come first"
+                                      : words(one) + " has finer stripes than " + words(other),
+                           isReversed ? "say so in an order file: bit 0 first"
+                                      : "put the images into the order of the patterns, or correct the order file"};
+        }
     return std::nullopt;
 }
 
@@ -186,7 +236,7 @@ std::optional<Finding> wrongCodes(const StripeWalk& walk, const CapturedView& vi
         return "'" + wordsOf(order.images[static_cast<std::size_t>(imageOfBit(bit))]) + "'";
     };
     if (best.swapped >= 0)
-        return Finding{Cause::wrongOrder, view.name, fileOf(view, imageOfBit(best.swapped)),
+        return Finding{Cause::bitOrder, view.name, fileOf(view, imageOfBit(best.swapped)),
                        "the images of " + words(best.swapped) + " and of " + words(best.swappedBy) + " are exchanged",
                        "put the images into the order of the patterns, or correct the order file"};
     if (best.exchanged == (1U << count) - 1U)
@@ -206,6 +256,7 @@ std::optional<Finding> checkStripes(const CapturedView& view, const std::vector<
                                     const CaptureOrder& order) {
     for (const PatternAxis axis : {PatternAxis::columns, PatternAxis::rows}) {
         const StripeWalk walk(images, order, axis);
+        if (const auto misplaced = wrongFineness(walk.all(), view, order)) return misplaced;
         if (const auto turned = wrongDirection(walk.bits(), view, order)) return turned;
         if (const auto mixed = wrongCodes(walk, view, order)) return mixed;
     }

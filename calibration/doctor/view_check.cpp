@@ -4,13 +4,18 @@
 #include <cmath>
 #include <map>
 
+#include <opencv2/calib3d.hpp>
 #include <opencv2/imgproc.hpp>
+
+#include "calibration/doctor/phase_check.h"
+#include "calibration/doctor/uneven_light.h"
 
 namespace lumorph {
 
 namespace {
 
 constexpr double kMostMotion = 0.5;       // camera pixels
+constexpr double kFaint = 0.3;            // of the coarsest stripes' contrast
 constexpr double kLeastCorrelation = 0.8; // of two pictures of the same board under the same light
 constexpr int kSaturated = 254;
 constexpr double kMostSaturated = 0.1; // of the board
@@ -53,18 +58,35 @@ double shareBeside(const DecodedView& decoded, const std::vector<cv::Point2d>& b
     return static_cast<double>(cv::countNonZero(lit & beside)) / std::max(1, cv::countNonZero(lit));
 }
 
-/// How far the board's points moved from where they are; the median of each coordinate.
-cv::Point2d motionOf(const cv::Mat& image, const std::vector<cv::Point2d>& board, double reach) {
+/// How far each of the board's points moved from where they are.
+std::vector<cv::Point2d> motionsOf(const cv::Mat& image, const std::vector<cv::Point2d>& board, double reach) {
     std::vector<cv::Point2f> points(board.begin(), board.end());
     const int room = std::clamp(static_cast<int>(reach), 3, 12);
     cv::cornerSubPix(image, points, {room, room}, {-1, -1},
                      {cv::TermCriteria::COUNT | cv::TermCriteria::EPS, 30, 0.01});
+    std::vector<cv::Point2d> motions;
+    for (std::size_t i = 0; i < points.size(); ++i) motions.push_back(cv::Point2d(points[i]) - board[i]);
+    return motions;
+}
+
+cv::Point2d medianOfPoints(const std::vector<cv::Point2d>& points) {
     std::vector<double> x, y;
-    for (std::size_t i = 0; i < points.size(); ++i) {
-        x.push_back(points[i].x - board[i].x);
-        y.push_back(points[i].y - board[i].y);
+    for (const cv::Point2d& point : points) {
+        x.push_back(point.x);
+        y.push_back(point.y);
     }
     return {medianOfNumbers(x), medianOfNumbers(y)};
+}
+
+/// Whether points moved as one board does: most by the same, or by a turn.
+bool areOneMotion(const std::vector<cv::Point2d>& motions, const std::vector<cv::Point2d>& board) {
+    std::vector<cv::Point2f> from(board.begin(), board.end());
+    std::vector<cv::Point2f> to;
+    for (std::size_t i = 0; i < board.size(); ++i) to.emplace_back(board[i] + motions[i]);
+    constexpr double kReach = 0.6, kMost = 0.6; // pixels, share of the points
+    std::vector<uchar> agree;
+    if (cv::estimateAffinePartial2D(from, to, agree, cv::RANSAC, kReach).empty()) return false;
+    return static_cast<double>(std::ranges::count(agree, 1)) > kMost * static_cast<double>(board.size());
 }
 
 double correlationOf(const cv::Mat1f& one, const cv::Mat1f& other, const cv::Mat1b& mask) {
@@ -156,24 +178,110 @@ Finding exchangedAxes(const std::string& view) {
 } // namespace
 
 std::optional<Finding> checkSteadiness(const CapturedView& view, const std::vector<cv::Mat>& images,
-                                       const CaptureOrder& order, const std::vector<cv::Point2d>& board) {
+                                       const CaptureOrder& order, const cv::Mat1b& white,
+                                       const std::vector<cv::Point2d>& board) {
     double reach = 30.0;
     for (std::size_t i = 0; i + 1 < board.size(); ++i) reach = std::min(reach, 0.4 * cv::norm(board[i] - board[i + 1]));
     const std::vector<EvenlyLit> lit = evenlyLit(images, order);
     const cv::Mat1b mask = outlineMask(images.front().size(), board);
-    std::vector<cv::Point2d> motion;
+    std::vector<std::vector<cv::Point2d>> motions;
+    std::vector<bool> isOther;
     for (const EvenlyLit& light : lit) {
         cv::Mat1b grey;
         light.image.convertTo(grey, CV_8U);
-        const bool isOther = correlationOf(light.image, lit.back().image, mask) < kLeastCorrelation;
-        motion.push_back(isOther ? cv::Point2d(reach, reach) : motionOf(grey, board, reach));
+        motions.push_back(motionsOf(grey, board, reach));
+        isOther.push_back(correlationOf(light.image, white, mask) < kLeastCorrelation);
     }
-    for (std::size_t i = 1; i < motion.size(); ++i) {
-        if (cv::norm(motion[i] - motion.front()) <= kMostMotion) continue;
-        const auto file = view.files[static_cast<std::size_t>(lit[i].firstImage)].filename().string();
-        return Finding{Cause::rigMoved, view.name, file,
+    const auto fileOf = [&view](int image) { return view.files[static_cast<std::size_t>(image)].filename().string(); };
+    const auto moved = [&](std::size_t i) {
+        return Finding{Cause::rigMoved, view.name, fileOf(lit[i].firstImage),
                        "camera or board moved: from about this image on the board is elsewhere in the picture",
                        "fix both, touch nothing while patterns are shown, and capture this pose again"};
+    };
+    // White, in which the board was found, against all others.
+    if (std::ranges::all_of(isOther, [](bool other) { return other; }) && !lit.empty()) {
+        const int image =
+            static_cast<int>(std::ranges::find(order.images, PatternImage(FlatField{true})) - order.images.begin());
+        return Finding{Cause::foreignImage, view.name, fileOf(std::min(image, static_cast<int>(view.files.size()) - 1)),
+                       "white shows the board elsewhere than all patterns do",
+                       "put the right image there, or capture this pose again"};
+    }
+    for (std::size_t i = 1; i < motions.size(); ++i) {
+        std::vector<cv::Point2d> since = motions[i];
+        for (std::size_t k = 0; k < since.size(); ++k) since[k] -= motions.front()[k];
+        if (isOther[i] == isOther[0] && (isOther[i] || cv::norm(medianOfPoints(since)) <= kMostMotion)) continue;
+        if (!isOther[i] && !isOther[0] && areOneMotion(since, board)) return moved(i);
+        if (auto cause = causeInImages(view, images, order)) return cause;
+        return moved(i);
+    }
+    constexpr double kMostByWhite = 2.0 * kMostMotion; // corners are found in another way there
+    if (!lit.empty() && cv::norm(medianOfPoints(motions.front())) > kMostByWhite) return moved(lit.size() - 1);
+    return std::nullopt;
+}
+
+namespace {
+
+/// The largest chessboard of at least so many inner corners; nothing where there is none, or where it may go on past
+/// the picture.
+std::optional<cv::Size> largestChessboard(const cv::Mat1b& white, cv::Size least) {
+    std::vector<cv::Point2f> corners;
+    cv::Mat meta;
+    try {
+        if (!cv::findChessboardCornersSB(white, least, corners, cv::CALIB_CB_LARGER | cv::CALIB_CB_NORMALIZE_IMAGE,
+                                         meta))
+            return std::nullopt;
+    } catch (const cv::Exception&) { // pictures that are too small for it
+        return std::nullopt;
+    }
+    const cv::Size size = meta.size();
+    if (size.area() != static_cast<int>(corners.size()) || size.width < 2 || size.height < 2) return std::nullopt;
+    // Two squares beyond each corner of it.
+    const auto at = [&](int column, int row) { return corners[static_cast<std::size_t>(row * size.width + column)]; };
+    const cv::Rect2f picture(0.0F, 0.0F, static_cast<float>(white.cols), static_cast<float>(white.rows));
+    for (const int column : {0, size.width - 1})
+        for (const int row : {0, size.height - 1}) {
+            const int inColumn = column == 0 ? 1 : column - 1;
+            const int inRow = row == 0 ? 1 : row - 1;
+            const cv::Point2f out = 2.0F * (2.0F * at(column, row) - at(inColumn, row) - at(column, inRow));
+            if (!picture.contains(at(column, row) + 0.75F * out)) return std::nullopt;
+        }
+    return size;
+}
+
+} // namespace
+
+std::optional<Finding> checkBoardSize(const std::string& view, const cv::Mat1b& white, const CalibrationBoard& board,
+                                      bool found) {
+    if (board.kind != CalibrationBoard::Kind::chess) return std::nullopt;
+    constexpr int kFewest = 3;
+    const cv::Size said(board.columns, board.rows);
+    const auto seen = largestChessboard(white, found ? said : cv::Size(kFewest, kFewest));
+    if (!seen || *seen == said || *seen == cv::Size(said.height, said.width)) return std::nullopt;
+    if (found && seen->area() <= said.area()) return std::nullopt;
+    const std::string words = std::to_string(seen->width) + " x " + std::to_string(seen->height);
+    return Finding{Cause::boardSize, view, "",
+                   "the board has " + words + " inner corners, not " + std::to_string(said.width) + " x " +
+                       std::to_string(said.height),
+                   "give the number of inner corners that the board has: one fewer than squares, both ways"};
+}
+
+std::optional<Finding> checkFocus(const std::string& view, const DecodedView& decoded,
+                                  const std::vector<cv::Mat>& images, const CaptureOrder& order) {
+    constexpr double kWide = 3.0; // camera pixels of a stripe that is to be resolved
+    const cv::Matx22d growth = growthOf(somePointsOf(decoded));
+    for (const bool columns : {true, false}) {
+        const int row = columns ? 0 : 1;
+        const double pixels = std::hypot(growth(row, 0), growth(row, 1)); // of the projector a camera pixel
+        if (!(pixels > 0.0) || !std::isfinite(pixels)) continue;
+        const double lost = 0.5 * (columns ? decoded.columnCell : decoded.rowCell) / pixels;
+        const double length = columns ? order.projector.width : order.projector.height;
+        const auto phases = fineContrast(images, order, columns ? PatternAxis::columns : PatternAxis::rows);
+        const bool isBlurred = phases ? phases->contrast < kFaint && 0.5 * length / phases->periods / pixels > kWide
+                                      : (columns ? decoded.columnCell : decoded.rowCell) > 1 && lost > kWide;
+        if (isBlurred)
+            return Finding{Cause::outOfFocus, view, "",
+                           "stripes are blurred away that are several pixels wide in the camera's picture",
+                           "focus camera and projector on the board, and hold it still"};
     }
     return std::nullopt;
 }
@@ -197,8 +305,21 @@ std::optional<Finding> checkLight(const std::string& view, const DecodedView& de
     if (share < kMostClipped) return std::nullopt;
     return Finding{Cause::clipped, view, "",
                    std::to_string(static_cast<int>(std::lround(100.0 * share))) +
-                       " % of what the projector lights are overexposed, so that the board cannot be found",
+                       " % of what the projector lights are overexposed, so that the board is lost",
                    "expose for less time until white is below 250 of 255"};
+}
+
+std::optional<Finding> checkDark(const std::string& view, const DecodedView& decoded) {
+    constexpr double kFewestGreys = 10.0;
+    std::vector<double> light;
+    for (int y = 0; y < decoded.white.rows; y += 4)
+        for (int x = 0; x < decoded.white.cols; x += 4) light.push_back(decoded.white(y, x) - decoded.black(y, x));
+    const auto bright = light.begin() + static_cast<std::ptrdiff_t>(light.size() * 95 / 100);
+    std::ranges::nth_element(light, bright);
+    if (*bright >= kFewestGreys) return std::nullopt;
+    return Finding{Cause::underexposed, view, "",
+                   "the projector's light makes " + std::to_string(std::lround(*bright)) + " of 255 greys",
+                   "expose for longer, open the aperture, darken the room"};
 }
 
 std::optional<Finding> checkProjectorSize(const std::string& view, const DecodedView& decoded, cv::Size projector,
@@ -258,5 +379,28 @@ std::optional<Finding> checkMirrored(const std::vector<ViewObservations>& views)
     return Finding{Cause::mirrored, first->name, "", "the images of this pose are mirrored, others are not",
                    "capture this pose again with the camera's setting of the others"};
 }
+
+namespace {
+
+bool isTurnedOver(const ViewObservations& view) {
+    const cv::Matx22d growth = growthOf(view.projector);
+    return growth(0, 0) < 0.0 && growth(1, 1) < 0.0 && isUpright(growth);
+}
+
+} // namespace
+
+std::optional<Finding> checkTurned(const std::vector<ViewObservations>& views) {
+    const auto count = std::ranges::count_if(views, isTurnedOver);
+    const bool mostAre = 2 * count > std::ssize(views);
+    if (count == 0 || count == std::ssize(views)) return std::nullopt;
+    const auto odd =
+        std::ranges::find_if(views, [mostAre](const ViewObservations& view) { return isTurnedOver(view) != mostAre; });
+    return Finding{Cause::phaseOrder, odd->name, "",
+                   "the projector's picture is upside down in this pose and not in others: steps of its phases are "
+                   "exchanged",
+                   "put the images into the order of the steps, or capture this pose again"};
+}
+
+bool isUpsideDown(const std::vector<ViewObservations>& views) { return std::ranges::all_of(views, isTurnedOver); }
 
 } // namespace lumorph

@@ -161,7 +161,7 @@ std::vector<Fault> faultsOf(const CaptureCopy& capture, cv::Size projector, cv::
          },
          {}},
         {"two bits exchanged",
-         "wrong_order",
+         "bit_order",
          capture.nameOf(4),
          [](const CaptureCopy& copy) {
              for (const std::size_t i : {4U, 5U, 6U, 7U}) copy.put(0, i, copy.original(0).files[i ^ 2U]);
@@ -201,6 +201,20 @@ std::vector<Fault> faultsOf(const CaptureCopy& capture, cv::Size projector, cv::
          {projector.height, projector.width}},
         {"only frontal views",
          "frontal_views",
+         "",
+         [](const CaptureCopy& copy) { // the board slid without tilting
+             for (std::size_t view = 1; view < copy.viewCount(); ++view) {
+                 for (std::size_t i = 0; i < copy.imageCount(); ++i) {
+                     Image image = readPng(copy.original(0).files[i]);
+                     moveRight(image, 5 * static_cast<int>(view));
+                     fs::remove(copy.place(view, i));
+                     writePng(image, copy.place(view, i));
+                 }
+             }
+         },
+         {}},
+        {"the same view in all poses",
+         "repeated_poses",
          "",
          [count](const CaptureCopy& copy) {
              for (std::size_t view = 1; view < copy.viewCount(); ++view)

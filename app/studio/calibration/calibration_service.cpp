@@ -180,6 +180,7 @@ void CalibrationService::forgetPoses() {
     jobs_.stop("save");
     store_ = std::make_shared<PoseStore>(state_.setup.way == CaptureWay::lab);
     state_.poses.clear();
+    passedOver_.clear();
     state_.savedIn.clear();
     state_.unsaved = 0;
 }
@@ -297,12 +298,13 @@ void CalibrationService::read() {
     state_.stage = tr("Looking for images");
     mailbox_ = std::make_shared<Mailbox>();
     const auto work = [setup = state_.setup, without, box = mailbox_](const Progress& progress) {
-        std::vector<CapturedView> views = viewsIn(setup.folder);
+        CaptureListing listing = listCapture(setup.folder);
+        std::vector<CapturedView>& views = listing.views;
         std::erase_if(views, [&](const CapturedView& view) { return std::ranges::count(without, view.name) > 0; });
         const CaptureOrder order = orderOf(setup);
         return orFinding<ReadCapture>([&]() -> OrFinding<ReadCapture> {
             try {
-                return readPoses(
+                ReadCapture read = readPoses(
                     views, setup.board, order,
                     [&](std::size_t index, const ReadPose& read) {
                         CalibrationPose pose = poseOf(views[index].name, read, setup.projector);
@@ -310,6 +312,8 @@ void CalibrationService::read() {
                         box->poses.emplace_back(index, std::move(pose));
                     },
                     progress);
+                read.warnings.insert(read.warnings.end(), listing.passedOver.begin(), listing.passedOver.end());
+                return read;
             } catch (const CaptureRefused& refused) {
                 if (!refused.finding().view.empty()) {
                     CalibrationPose pose = poseRefusedBy(refused.finding(), pictureOfFinding(views, refused.finding()));
@@ -331,6 +335,8 @@ void CalibrationService::read() {
                 return;
             }
             camera_ = std::get<ReadCapture>(read).camera;
+            passedOver_ = std::move(std::get<ReadCapture>(read).warnings); // the poses have their own
+            std::erase_if(passedOver_, [](const Finding& one) { return one.cause != Cause::passedOver; });
             solve();
         },
         [this](const std::exception& error) { setTrouble(error); });
@@ -564,6 +570,7 @@ void CalibrationService::solve() {
     ReadCapture capture;
     capture.views = countingViews(state_);
     capture.camera = camera_;
+    capture.warnings = passedOver_;
     for (const CalibrationPose& pose : state_.poses)
         if (pose.counts()) capture.warnings.insert(capture.warnings.end(), pose.warnings.begin(), pose.warnings.end());
     if (capture.views.size() < static_cast<std::size_t>(kFewestPoses)) {
@@ -582,8 +589,12 @@ void CalibrationService::solve() {
     }
     using Result = std::shared_ptr<const CalibrationResult>;
     const auto work = [capture = std::move(capture), size, setup = state_.setup, flat = flatPoints(),
-                       room = document_.state().installation, placement = placement()](const Progress& progress) {
+                       room = document_.state().installation,
+                       placement = placement()](const Progress& progress) mutable {
         return orFinding<Result>([&]() -> OrFinding<Result> {
+            CalibrationSetup said = setup;
+            said.projector = size;
+            capture.order = said.order.empty() ? orderOf(said) : CaptureOrder{size, {}}; // its file may be gone
             auto result = std::make_shared<CalibrationResult>();
             result->solved = calibrateCapture(capture, size, {}, progress.part(0.0, 0.8));
             result->residuals = residualsOf(capture.views, result->solved);

@@ -132,12 +132,13 @@ private:
     QTimer* liveTimer_;
     bool active_ = false;
     bool isLooking_ = false;
-    bool isStale_ = false;           ///< what is looked at has changed meanwhile: another look follows
-    bool isFlatChosen_ = false;      ///< by the user; else it is the first pose
-    bool rest_ = false;              ///< the poses that are missing follow by themselves
-    int benchTry_ = 0;               ///< counts, so that a bench that comes too late is not taken
-    cv::Size camera_;                ///< of the poses
-    std::unique_ptr<Looker> looker_; ///< last: it refers to the rest
+    bool isStale_ = false;            ///< what is looked at has changed meanwhile: another look follows
+    bool isFlatChosen_ = false;       ///< by the user; else it is the first pose
+    bool rest_ = false;               ///< the poses that are missing follow by themselves
+    int benchTry_ = 0;                ///< counts, so that a bench that comes too late is not taken
+    cv::Size camera_;                 ///< of the poses
+    std::vector<Finding> passedOver_; ///< what lies beside the poses in their folder
+    std::unique_ptr<Looker> looker_;  ///< last: it refers to the rest
 };
 
 } // namespace lumorph::studio

@@ -67,7 +67,7 @@ private:
 /// Something that may be over when one looks again.
 bool isPassing(Cause cause) {
     return cause == Cause::rigMoved || cause == Cause::lateFrame || cause == Cause::exposureDrifts ||
-           cause == Cause::wrongOrder; // as a person in the light is called
+           cause == Cause::handInView || cause == Cause::wrongOrder; // as a person in the light is called
 }
 
 /// Deleted in the window's thread, whoever lets go of it last.
