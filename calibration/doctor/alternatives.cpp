@@ -23,6 +23,7 @@ constexpr double kSigma = 0.1;      // pixels, of sound observations: what is ab
 constexpr double kRobustLoss = 3.0; // standard deviations
 constexpr double kTwoPi = 2.0 * std::numbers::pi;
 constexpr double kExplains = 0.35; // of the squares of errors that a cause must take away
+constexpr double kAsGood = 1.3;    // times the squares that remain: a cause with fewer numbers is as likely
 constexpr double kRefused = 2.0;   // times what is bearable: above, a capture is refused
 constexpr double kNoise = 0.3;     // pixels: errors that need no explanation
 constexpr double kLost = 5.0;      // pixels: above, the camera was not found at all
@@ -677,8 +678,16 @@ std::optional<Explanation> explanationOf(const std::vector<ViewObservations>& vi
         const double refused = by.cause == Cause::cameraMoved ? 1.0 : kRefused;
         return Explanation{{by.cause, by.view, "", by.words, by.remedy}, by.amount >= refused};
     };
-    for (const Alternative& by : all) // the one that explains most first
-        if (by.amount >= 1.0 && by.explained >= kExplains) return told(by);
+    const auto counts = [](const Alternative& by) { return by.amount >= 1.0 && by.explained >= kExplains; };
+    for (const Alternative& by : all) { // the one that explains most first
+        if (!counts(by)) continue;
+        // Of a few poses another focal length is much like another place of the camera, which has more to adjust.
+        const auto focus = std::ranges::find(all, Cause::cameraRefocused, &Alternative::cause);
+        if (by.cause == Cause::cameraMoved && focus != all.end() && counts(*focus) &&
+            1.0 - focus->explained < kAsGood * (1.0 - by.explained))
+            return told(*focus);
+        return told(by);
+    }
     if (result.camera.rms >= kNoise || result.projector.rms >= kNoise) {
         const Alternative lens = trials.anyLens(); // explains much: it is for what nothing else does
         if (lens.amount >= 1.0 && lens.explained >= kExplains) return told(lens);

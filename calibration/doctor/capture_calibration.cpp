@@ -155,21 +155,23 @@ ReadPose readPose(const CapturedView& view, const std::vector<cv::Mat>& images, 
     PoseTroubles troubles;
     const auto sequence = checkSequence(view, images, order);
     // Noise averages out, and a Gray code has its edges where pattern and inverse are alike under any curve.
-    const bool isBearable = sequence && (sequence->cause == Cause::noisy ||
-                                         (sequence->cause == Cause::projectorGamma && isGrayCode(order)));
+    const bool isBearable =
+        sequence &&
+        (sequence->cause == Cause::noisy ||
+         (isGrayCode(order) && (sequence->cause == Cause::projectorGamma || sequence->cause == Cause::clipped)));
     if (sequence && !isBearable) throw CaptureRefused(*sequence);
     troubles.add(sequence);
     troubles.throwIf(checkStripes(view, images, order));
     troubles.throwIf(checkPhases(view, images, order));
     DecodedView decoded = decodeView(images, order);
     troubles.add(checkDark(view.name, decoded));
-    troubles.add(checkFocus(view.name, decoded, images, order));
     const std::optional<BoardPoints> found = findBoard(decoded.white, board);
-    troubles.throwIf(checkBoardSize(view.name, decoded.white, board, found.has_value()));
     const auto bright = checkLight(view.name, decoded);
     if (found)
         if (const auto moved = checkSteadiness(view, images, order, decoded.white, found->seen))
             troubles.throwIf(bright ? bright : moved); // what is cut off has no corners to compare
+    troubles.add(checkFocus(view.name, decoded, images, order));
+    troubles.throwIf(checkBoardSize(view.name, decoded.white, board, found.has_value()));
     troubles.throwIf(
         checkProjectorSize(view.name, decoded, order.projector, found ? found->seen : std::vector<cv::Point2d>()));
     if (!found) troubles.throwIf(bright);
@@ -180,6 +182,7 @@ ReadPose readPose(const CapturedView& view, const std::vector<cv::Mat>& images, 
     if (read.observations.projector.size() < kFewestPoints && isReadableInverted(images, order, found->seen))
         throw CaptureRefused({Cause::inverseSwapped, view.name, "", "patterns and their inverses are exchanged",
                               "name the images in the order pattern, inverse, or say so in an order file"});
+    if (read.observations.projector.size() < kFewestPoints) troubles.throwIf(checkNoise(view.name, read.decoded));
     if (read.observations.projector.size() < kFewestPoints)
         troubles.throwIf(Finding{Cause::boardUnlit, view.name, "",
                                  "the patterns can be read on too little of the board",

@@ -7,6 +7,8 @@
 #include <numeric>
 #include <string>
 
+#include <opencv2/imgproc.hpp>
+
 namespace lumorph {
 
 namespace {
@@ -62,6 +64,17 @@ Turns turnsOf(const std::vector<cv::Mat>& images, const std::vector<int>& steps)
     cv::cartToPolar(cosine, sine, turns.amplitude, angle);
     turns.turns = angle / kTurn;
     return turns;
+}
+
+/// The same of blurred images: a coarse set changes slowly, and noise is what turns it over.
+Turns smoothTurnsOf(const std::vector<cv::Mat>& images, const std::vector<int>& steps) {
+    std::vector<cv::Mat> smooth;
+    std::vector<int> order;
+    for (const int step : steps) {
+        cv::GaussianBlur(images[static_cast<std::size_t>(step)], smooth.emplace_back(), {}, 2.0);
+        order.push_back(static_cast<int>(order.size()));
+    }
+    return turnsOf(smooth, order);
 }
 
 float wrapped(float turns) { return turns - std::round(turns); }
@@ -161,14 +174,23 @@ std::vector<int> inOrder(const std::vector<int>& images, const std::vector<int>&
 /// at the projector's one end and ends at the other.
 bool turnsOver(const Turns& coarse) {
     constexpr float kJump = 0.6F;
-    constexpr int kFewestJumps = 40;
+    constexpr int kFewestJumps = 100;
+    const cv::Point kAcross(kApart, 0), kDown(0, kApart);
     const float least = leastOf(coarse.amplitude);
+    const cv::Rect all(cv::Point(), coarse.turns.size());
+    const auto isLit = [&](cv::Point at) { return all.contains(at) && coarse.amplitude(at) > least; };
+    // Past the projector's picture it is dark; at its rim noise turns over as well.
+    const auto isInside = [&](cv::Point at) {
+        return isLit(at) && isLit(at + 3 * kAcross) && isLit(at - 3 * kAcross) && isLit(at + 3 * kDown) &&
+               isLit(at - 3 * kDown);
+    };
     int jumps = 0;
-    for (int y = 0; y + kApart < coarse.turns.rows; y += 2)
-        for (int x = 0; x + kApart < coarse.turns.cols; x += 2) {
-            if (coarse.amplitude(y, x) < least) continue;
-            for (const cv::Point at : {cv::Point(x + kApart, y), cv::Point(x, y + kApart)})
-                jumps += coarse.amplitude(at) > least && std::abs(coarse.turns(at) - coarse.turns(y, x)) > kJump;
+    for (int y = 0; y < coarse.turns.rows; y += 2)
+        for (int x = 0; x < coarse.turns.cols; x += 2) {
+            if (!isInside({x, y})) continue;
+            for (const cv::Point way : {kAcross, kDown})
+                jumps += isLit(cv::Point(x, y) + way) &&
+                         std::abs(coarse.turns(cv::Point(x, y) + way) - coarse.turns(y, x)) > kJump;
         }
     return jumps > kFewestJumps;
 }
@@ -185,7 +207,7 @@ public:
         for (std::size_t s = 0; s + 1 < sets_.size(); ++s)
             if (auto found = compared(sets_[s], sets_[s + 1])) return found;
         const StepImages& coarse = sets_.front();
-        if (turnsOver(turnsOf(images_, coarse.images)))
+        if (turnsOver(smoothTurnsOf(images_, coarse.images)))
             return exchanged(coarse, "the " + axisWords(axis_) +
                                          " turn over within the picture: the steps begin elsewhere or are exchanged");
         return std::nullopt;

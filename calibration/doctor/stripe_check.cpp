@@ -155,7 +155,7 @@ std::optional<Finding> wrongDirection(const std::vector<BitStripes>& bits, const
 /// A finer bit of a Gray code has twice as many stripes as the next coarser one, and blur takes the finest first.
 std::optional<Finding> wrongFineness(const std::vector<BitStripes>& bits, const CapturedView& view,
                                      const CaptureOrder& order) {
-    constexpr double kSureStrength = 0.75, kFewestLines = 3.0, kFewer = 0.6;
+    constexpr double kUnseen = 0.35, kSureStrength = 0.75, kFewestLines = 3.0, kFewer = 0.6;
     const auto words = [&](const BitStripes& bit) {
         return "'" + wordsOf(order.images[static_cast<std::size_t>(bit.pattern)]) + "'";
     };
@@ -163,10 +163,12 @@ std::optional<Finding> wrongFineness(const std::vector<BitStripes>& bits, const 
         for (std::size_t fine = coarse + 1; fine < bits.size(); ++fine) {
             const BitStripes& one = bits[coarse];
             const BitStripes& other = bits[fine];
-            const bool isBlurred = one.strength < kResolvedShare && other.strength > kSureStrength;
+            const bool isLost = one.strength < kUnseen && other.strength > kSureStrength;
+            const bool isWeaker = one.strength < kSureStrength * other.strength && one.lines > kFewestLines &&
+                                  other.lines < kFewer * one.lines;
             const bool hasFewer = one.strength > kSureStrength && other.strength > kSureStrength &&
                                   one.lines > kFewestLines && other.lines < kFewer * one.lines;
-            if (!isBlurred && !hasFewer) continue;
+            if (!isLost && !isWeaker && !hasFewer) continue;
             const bool isReversed = coarse == 0 && bits.back().lines < 0.5 * kFewestLines && bits.size() > 4 &&
                                     bits[1].lines > bits[bits.size() - 2].lines;
             return Finding{Cause::bitOrder, view.name, fileOf(view, one.pattern),

@@ -178,24 +178,75 @@ std::optional<Finding> driftIn(const CapturedView& view, const Samples& samples)
                    "switch off automatic exposure and gain in the camera, let the lamp warm up, and capture again"};
 }
 
+/// The most uneven of the sets that can be judged; infinite where too few can.
+float mostUneven(const Eigen::VectorXf& uneven) {
+    float most = 0.0F;
+    int judged = 0;
+    for (const float value : uneven)
+        if (std::isfinite(value)) most = std::max(most, value), ++judged;
+    return 3 * judged >= 2 * static_cast<int>(uneven.size()) ? most : std::numeric_limits<float>::infinity();
+}
+
 std::optional<Finding> curveIn(const CapturedView& view, const Samples& samples) {
     constexpr std::array kPowers = {0.25, 0.33, 0.4, 0.45, 0.55, 0.7, 1.4, 1.8, 2.2, 2.8};
+    double best = 1.0;
+    auto least = static_cast<float>(kEvenLight);
     for (const double power : kPowers) {
         const auto straight = [power](float grey) {
             return static_cast<float>(255.0 * std::pow(std::max(0.0F, grey) / 255.0, power));
         };
         const Eigen::MatrixXf grey = samples.grey.unaryExpr(straight);
         const Eigen::VectorXf range = grey.rowwise().maxCoeff() - grey.rowwise().minCoeff();
-        if (!areEven(unevenness(samples.means(grey), range))) continue;
-        std::string exponent = std::to_string(1.0 / power);
-        exponent.resize(exponent.find('.') + 2);
-        return Finding{Cause::projectorGamma, view.name, "",
-                       "the greys follow a curve, a gamma of about " + exponent +
-                           ": patterns and their inverses do not add up",
-                       "switch off gamma and contrast corrections in the camera; for phases set the projector's "
-                       "response to linear"};
+        if (const float here = mostUneven(unevenness(samples.means(grey), range)); here < least)
+            least = here, best = power;
     }
-    return std::nullopt;
+    if (best == 1.0) return std::nullopt;
+    std::string exponent = std::to_string(1.0 / best);
+    exponent.resize(exponent.find('.') + 2);
+    return Finding{Cause::projectorGamma, view.name, "",
+                   "the greys follow a curve, a gamma of about " + exponent +
+                       ": patterns and their inverses do not add up",
+                   "switch off gamma and contrast corrections in the camera; for phases set the projector's response "
+                   "to linear"};
+}
+
+/// A Gray code under any curve, cut off or not: where a pixel is clearly lit or dark, pattern and inverse still add up;
+/// at the edges of stripes they do not, and the finest stripes are edges all over.
+std::optional<Finding> bentEdges(const CapturedView& view, const Samples& samples, const CaptureOrder& order) {
+    constexpr float kClearly = 0.6F, kMostlyClear = 0.65F, kDark = 1.5F;
+    constexpr int kFinest = 1;
+    const Eigen::VectorXf uneven = unevenness(samples.means(samples.grey), samples.range);
+    Eigen::MatrixXf means = samples.means(samples.grey);
+    double dark = 0.0;
+    for (std::size_t s = 0; s < samples.sets.size(); ++s) {
+        const auto at = static_cast<Eigen::Index>(s);
+        const auto* bit = std::get_if<GrayBit>(&order.images[static_cast<std::size_t>(samples.sets[s].front())]);
+        if (bit == nullptr) return std::nullopt;
+        Eigen::Index clear = 0;
+        for (Eigen::Index p = 0; p < samples.grey.rows(); ++p) {
+            const float one = samples.grey(p, samples.sets[s].front());
+            const float other = samples.grey(p, samples.sets[s].back());
+            dark += std::min(one, other) < kDark;
+            if (std::abs(one - other) > kClearly * samples.range[p])
+                ++clear;
+            else
+                means(p, at) = std::numeric_limits<float>::quiet_NaN();
+        }
+        const bool isJudged = bit->bit > kFinest || uneven[at] < static_cast<float>(kEvenLight);
+        if (!isJudged)
+            means.col(at).setConstant(std::numeric_limits<float>::quiet_NaN());
+        else if (static_cast<float>(clear) < kMostlyClear * static_cast<float>(samples.grey.rows()) &&
+                 bit->bit > kFinest)
+            return std::nullopt;
+    }
+    if (mostUneven(unevenness(means, samples.range)) >= static_cast<float>(kEvenLight)) return std::nullopt;
+    constexpr double kMuch = 0.2;
+    if (const double share = dark / static_cast<double>(means.size()); share > kMuch)
+        return Finding{Cause::clipped, view.name, "", percent(share) + " of what is seen is cut off at black",
+                       "expose for longer, or lower the camera's black level"};
+    return Finding{Cause::projectorGamma, view.name, "",
+                   "the greys follow a curve: at the edges of stripes patterns and their inverses do not add up",
+                   "switch off gamma and contrast corrections in camera and projector"};
 }
 
 std::optional<Finding> clippingIn(const CapturedView& view, const Samples& samples) {
@@ -231,9 +282,10 @@ std::optional<Finding> noiseIn(const CapturedView& view, const Samples& samples,
     const double sigma = pixelNoiseOf(images, order);
     const Eigen::VectorXf uneven = unevenness(samples.means(samples.grey), samples.range);
     const double light = samples.range.mean();
+    const double byRange = samples.range.cwiseInverse().mean();
     for (std::size_t s = 0; s < samples.sets.size(); ++s) {
         // Mean distance of a normal value: sqrt(2/pi) of its sigma.
-        const double made = 0.8 * sigma / std::sqrt(static_cast<double>(samples.sets[s].size())) / light;
+        const double made = 0.8 * sigma / std::sqrt(static_cast<double>(samples.sets[s].size())) * byRange;
         if (uneven[static_cast<Eigen::Index>(s)] > kExplained * made) return std::nullopt;
     }
     return Finding{Cause::noisy, view.name, "",
@@ -255,7 +307,7 @@ std::vector<cv::Mat1f> evenLightOf(const std::vector<cv::Mat>& images, const std
 
 /// Whether the picture after a set is that before it, shifted.
 bool hasMovedAt(const std::vector<cv::Mat1f>& even, std::size_t set) {
-    constexpr double kShift = 0.5, kAlike = 0.2; // pixels; response of a phase correlation
+    constexpr double kShift = 0.5, kResponse = 0.2; // pixels; response of a phase correlation
     if (set < 1 || set + 1 >= even.size()) return false;
     const auto meanOf = [&even](std::size_t from, std::size_t end) {
         cv::Mat1f sum = cv::Mat1f::zeros(even.front().size());
@@ -266,7 +318,7 @@ bool hasMovedAt(const std::vector<cv::Mat1f>& even, std::size_t set) {
     cv::createHanningWindow(window, even.front().size(), CV_32F);
     double response = 0.0;
     const cv::Point2d shift = cv::phaseCorrelate(meanOf(0, set), meanOf(set + 1, even.size()), window, &response);
-    return cv::norm(shift) > kShift && response > kAlike;
+    return cv::norm(shift) > kShift && response > kResponse;
 }
 
 /// By how much an image leaves what all others stay within, as a share of the light.
@@ -351,6 +403,7 @@ std::optional<Finding> causeInGreys(const CapturedView& view, const std::vector<
     if (!samples.isLit() || areEven(unevenness(samples.means(samples.grey), samples.range))) return std::nullopt;
     if (auto noise = noiseIn(view, samples, images, order)) return noise;
     if (auto clipping = clippingIn(view, samples)) return clipping;
+    if (auto bent = bentEdges(view, samples, order)) return bent;
     if (auto drift = driftIn(view, samples)) return drift;
     return curveIn(view, samples);
 }

@@ -267,7 +267,7 @@ std::optional<Finding> checkBoardSize(const std::string& view, const cv::Mat1b& 
 
 std::optional<Finding> checkFocus(const std::string& view, const DecodedView& decoded,
                                   const std::vector<cv::Mat>& images, const CaptureOrder& order) {
-    constexpr double kWide = 3.0; // camera pixels of a stripe that is to be resolved
+    constexpr double kWide = 4.5; // camera pixels of a stripe that any camera resolves
     const cv::Matx22d growth = growthOf(somePointsOf(decoded));
     for (const bool columns : {true, false}) {
         const int row = columns ? 0 : 1;
@@ -309,17 +309,37 @@ std::optional<Finding> checkLight(const std::string& view, const DecodedView& de
                    "expose for less time until white is below 250 of 255"};
 }
 
-std::optional<Finding> checkDark(const std::string& view, const DecodedView& decoded) {
-    constexpr double kFewestGreys = 10.0;
-    std::vector<double> light;
+namespace {
+
+/// How much the projector's light adds to what it lights well, grey levels.
+double lightIn(const DecodedView& decoded) {
+    std::vector<int> light;
     for (int y = 0; y < decoded.white.rows; y += 4)
         for (int x = 0; x < decoded.white.cols; x += 4) light.push_back(decoded.white(y, x) - decoded.black(y, x));
     const auto bright = light.begin() + static_cast<std::ptrdiff_t>(light.size() * 95 / 100);
     std::ranges::nth_element(light, bright);
-    if (*bright >= kFewestGreys) return std::nullopt;
+    return *bright;
+}
+
+} // namespace
+
+std::optional<Finding> checkDark(const std::string& view, const DecodedView& decoded) {
+    constexpr double kFewestGreys = 10.0;
+    const double light = lightIn(decoded);
+    if (light >= kFewestGreys) return std::nullopt;
     return Finding{Cause::underexposed, view, "",
-                   "the projector's light makes " + std::to_string(std::lround(*bright)) + " of 255 greys",
+                   "the projector's light makes " + std::to_string(std::lround(light)) + " of 255 greys",
                    "expose for longer, open the aperture, darken the room"};
+}
+
+std::optional<Finding> checkNoise(const std::string& view, const DecodedView& decoded) {
+    constexpr double kLeastNoise = 4.0, kMostNoise = 0.05; // grey levels, of the light
+    const double light = lightIn(decoded);
+    if (decoded.noise < std::max(kLeastNoise, kMostNoise * light)) return std::nullopt;
+    return Finding{Cause::noisy, view, "",
+                   "the pictures have a noise of " + std::to_string(std::lround(decoded.noise)) +
+                       " grey levels, where light makes " + std::to_string(std::lround(light)),
+                   "expose for longer with less gain, bring more light onto the board"};
 }
 
 std::optional<Finding> checkProjectorSize(const std::string& view, const DecodedView& decoded, cv::Size projector,

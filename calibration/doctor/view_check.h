@@ -38,6 +38,9 @@ namespace lumorph {
 /// Whether white and black differ by so few greys that patterns hardly can be told.
 [[nodiscard]] std::optional<Finding> checkDark(const std::string& view, const DecodedView& decoded);
 
+/// Whether noise is so large beside the projector's light that patterns are lost in it.
+[[nodiscard]] std::optional<Finding> checkNoise(const std::string& view, const DecodedView& decoded);
+
 /// Whether what was decoded can come from a projector of this size: coordinates past its edge, or a picture that ends
 /// in a straight line before it. Where only the board is lit (its points in the camera's picture; empty: not known),
 /// its own rim is no such end.

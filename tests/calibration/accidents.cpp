@@ -81,6 +81,14 @@ void forAll(SpoiledCapture& capture, const std::function<cv::Mat(const cv::Mat&)
         for (cv::Mat& image : pose) image = change(image);
 }
 
+/// Without its rim, into which nothing comes from outside when a picture is moved.
+void crop(SpoiledCapture& capture) {
+    const int rim = capture.camera().width / 30;
+    forAll(capture, [rim](const cv::Mat& image) {
+        return image(cv::Rect(rim, rim, image.cols - 2 * rim, image.rows - 2 * rim)).clone();
+    });
+}
+
 void forPose(SpoiledCapture& capture, std::size_t pose, const std::function<cv::Mat(const cv::Mat&)>& change) {
     for (cv::Mat& image : capture.poses[pose]) image = change(image);
 }
@@ -147,11 +155,13 @@ cv::Mat covered(const cv::Mat& image, cv::Point2d at, double reach) {
 
 /// Where boards are: about the middle of what white lights most.
 cv::Point2d middleOfLight(const SpoiledCapture& capture, std::size_t pose) {
-    const int white = placeOf(capture.order, FlatField{true});
-    const int black = placeOf(capture.order, FlatField{false});
-    cv::Mat light;
-    cv::subtract(capture.poses[pose][static_cast<std::size_t>(white)],
-                 capture.poses[pose][static_cast<std::size_t>(black)], light);
+    cv::Mat least = capture.poses[pose].front().clone();
+    cv::Mat most = least.clone();
+    for (const cv::Mat& image : capture.poses[pose]) {
+        cv::min(least, image, least);
+        cv::max(most, image, most);
+    }
+    const cv::Mat light = most - least;
     const cv::Moments moments = cv::moments(light > 0.5 * cv::mean(light)[0] + 20.0, true);
     return {moments.m10 / std::max(1.0, moments.m00), moments.m01 / std::max(1.0, moments.m00)};
 }
@@ -226,6 +236,7 @@ public:
                 const std::size_t from = 1 + dice() % (capture.poses.size() - 1);
                 for (std::size_t v = from; v < (all ? capture.poses.size() : from + 1); ++v)
                     forPose(capture, v, [&](const cv::Mat& image) { return warped(image, how); });
+                crop(capture);
             };
             add("camera rolled in one pose " + text(degrees), {Cause::cameraMoved},
                 [roll](SpoiledCapture& capture, std::mt19937& dice) { roll(capture, dice, false); });
@@ -243,6 +254,7 @@ public:
                         const std::size_t from = 1 + dice() % (capture.poses.size() - 1);
                         for (std::size_t v = from; v < (all ? capture.poses.size() : from + 1); ++v)
                             forPose(capture, v, [&](const cv::Mat& image) { return warped(image, how); });
+                        crop(capture);
                     });
         for (const double share : {1.02, 1.04})
             add("refocused from a pose on " + text(share), {Cause::cameraRefocused},
@@ -455,7 +467,7 @@ public:
                 Images& pose = capture.poses[anyPose(capture, dice)];
                 std::swap(pose[pose.size() - 2], pose[pose.size() - 1]);
             },
-            Patterns::any, false);
+            Patterns::gray, false);
         for (const bool all : {true, false}) {
             add(
                 std::string("phase steps 2 and 3 exchanged, ") + (all ? "all sets" : "finest columns"),
@@ -540,8 +552,8 @@ public:
                         Images& pose = capture.poses[at];
                         const cv::Point2d middle = middleOfLight(capture, at) +
                                                    cv::Point2d(between(dice, -30.0, 30.0), between(dice, -30.0, 30.0));
-                        const int from = within(dice, 2, static_cast<int>(pose.size()) - 4 - pictures);
-                        for (int i = from; i < from + pictures; ++i)
+                        const int from = within(dice, 1, std::max(1, static_cast<int>(pose.size()) - 4 - pictures));
+                        for (int i = from; i < std::min(from + pictures, static_cast<int>(pose.size())); ++i)
                             pose[static_cast<std::size_t>(i)] =
                                 covered(pose[static_cast<std::size_t>(i)], middle, reach * capture.camera().width);
                     });
@@ -551,7 +563,7 @@ public:
                     Images& pose = capture.poses[anyPose(capture, dice)];
                     const int from = within(dice, 2, static_cast<int>(pose.size()) / 2);
                     const double angle = between(dice, 0.0, std::numbers::pi);
-                    for (int i = from; i < from + 6; ++i)
+                    for (int i = from; i < std::min(from + 6, static_cast<int>(pose.size())); ++i)
                         pose[static_cast<std::size_t>(i)] =
                             withMoire(pose[static_cast<std::size_t>(i)], strength, 9.0, angle);
                 });
@@ -567,10 +579,13 @@ public:
             [=](SpoiledCapture& capture, std::mt19937& dice) {
                 takeOther(capture, dice, [](std::size_t count) { return count - 2; });
             },
-            Patterns::any, false);
-        add("black of another pose", {Cause::foreignImage}, [=](SpoiledCapture& capture, std::mt19937& dice) {
-            takeOther(capture, dice, [](std::size_t count) { return count - 1; });
-        });
+            Patterns::gray, false);
+        add(
+            "black of another pose", {Cause::foreignImage},
+            [=](SpoiledCapture& capture, std::mt19937& dice) {
+                takeOther(capture, dice, [](std::size_t count) { return count - 1; });
+            },
+            Patterns::gray);
         for (int k = 0; k < 3; ++k)
             add("a pattern of another pose " + std::to_string(k), {Cause::foreignImage},
                 [=](SpoiledCapture& capture, std::mt19937& dice) {

@@ -43,11 +43,8 @@ SpoiledCapture simulatedCapture(bool phases, std::uint32_t seed) {
     capture.order =
         parsePattern(phases ? "phase:16x3+1x3" : "graycode", {setup.projector.size.x, setup.projector.size.y});
     capture.board = parseCalibrationBoard("chess:9x7:30");
-    std::vector<Light> lights = phases ? phaseLights(setup.projector.size, 16) : grayCodeLights(setup.projector.size);
-    if (phases) {
-        lights.emplace_back([](int, int) { return 1.0; });
-        lights.emplace_back([](int, int) { return 0.0; });
-    }
+    const std::vector<Light> lights =
+        phases ? phaseLights(setup.projector.size, 16) : grayCodeLights(setup.projector.size);
     for (std::size_t pose = 0; pose < setup.cameraFromBoard.size(); ++pose) {
         capture.names.push_back("pose_" + std::to_string(pose));
         capture.poses.push_back(greysOf(
