@@ -153,8 +153,10 @@ void importCalibration(const ImportArguments& arguments) {
 void addCalibrateImport(CLI::App& group) {
     auto arguments = std::make_shared<ImportArguments>();
     CLI::App* command = group.add_subcommand("import", "What a calibration of Lumorph or of another program says");
-    command->add_option("file", arguments->file, "JSON of Lumorph, or YAML, XML or JSON of OpenCV, ROS, Kalibr, "
-                                                 "SLStudio or procam-calibration")
+    command
+        ->add_option("file", arguments->file,
+                     "JSON of Lumorph, or YAML, XML or JSON of OpenCV, ROS, Kalibr, "
+                     "SLStudio or procam-calibration")
         ->required();
     command->add_option("--project", arguments->project,
                         "The project whose room it is for (default: the virtual lab's installation)");

@@ -29,21 +29,22 @@ nlohmann::json jsonOf(const CalibratedDevice& device) {
     const double fy = lens[kFocalLength] * lens[kAspect];
     const double fySigma = std::hypot(sigma[kFocalLength] * lens[kAspect], lens[kFocalLength] * sigma[kAspect]);
     const bool hasSigma = std::ranges::any_of(sigma, [](double one) { return one != 0.0; });
-    nlohmann::json all = {{"K", {{lens[kFocalLength], 0.0, lens[kPrincipalX]}, {0.0, fy, lens[kPrincipalY]}, {0.0, 0.0, 1.0}}},
-            {"distortion", {lens[kK1], lens[kK2], lens[kP1], lens[kP2], lens[kK3]}},
-            {"size", {device.size.width, device.size.height}},
-            {"rms", jsonOf(whereSaid(device.rms))},
-            {"model", device.model},
-            {"sigma",
-             {{"fx", sigma[kFocalLength]},
-              {"fy", fySigma},
-              {"cx", sigma[kPrincipalX]},
-              {"cy", sigma[kPrincipalY]},
-              {"k1", sigma[kK1]},
-              {"k2", sigma[kK2]},
-              {"p1", sigma[kP1]},
-              {"p2", sigma[kP2]},
-              {"k3", sigma[kK3]}}}};
+    nlohmann::json all = {
+        {"K", {{lens[kFocalLength], 0.0, lens[kPrincipalX]}, {0.0, fy, lens[kPrincipalY]}, {0.0, 0.0, 1.0}}},
+        {"distortion", {lens[kK1], lens[kK2], lens[kP1], lens[kP2], lens[kK3]}},
+        {"size", {device.size.width, device.size.height}},
+        {"rms", jsonOf(whereSaid(device.rms))},
+        {"model", device.model},
+        {"sigma",
+         {{"fx", sigma[kFocalLength]},
+          {"fy", fySigma},
+          {"cx", sigma[kPrincipalX]},
+          {"cy", sigma[kPrincipalY]},
+          {"k1", sigma[kK1]},
+          {"k2", sigma[kK2]},
+          {"p1", sigma[kP1]},
+          {"p2", sigma[kP2]},
+          {"k3", sigma[kK3]}}}};
     // Of a file of another program, what it does not say.
     if (!hasSigma) all["sigma"] = nullptr;
     if (device.size.empty()) all["size"] = nullptr;
@@ -134,8 +135,7 @@ void printDevice(const char* name, const CalibratedDevice& device) {
     const std::string rms = whereSaid(device.rms) ? figure(device.rms, 0.0, "%.3f pixels") : "unknown";
     std::printf("%-10s %s, model %s, RMS %s\n", name, size.c_str(), device.model.c_str(), rms.c_str());
     std::printf("  focal length    %s pixels\n", figure(lens[kFocalLength], sigma[kFocalLength], "%9.2f").c_str());
-    std::printf("  principal point %s, %s pixels\n",
-                figure(lens[kPrincipalX], sigma[kPrincipalX], "%9.2f").c_str(),
+    std::printf("  principal point %s, %s pixels\n", figure(lens[kPrincipalX], sigma[kPrincipalX], "%9.2f").c_str(),
                 figure(lens[kPrincipalY], sigma[kPrincipalY], "%.2f").c_str());
     std::printf("  k1 %.4f  k2 %.4f  p1 %.5f  p2 %.5f  k3 %.4f\n", lens[kK1], lens[kK2], lens[kP1], lens[kP2],
                 lens[kK3]);

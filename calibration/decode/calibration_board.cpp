@@ -72,8 +72,8 @@ constexpr NamedDictionary kNamedDictionaries[] = {
     {"APRILTAG_36h11", cv::aruco::DICT_APRILTAG_36h11, 587},
 };
 /// Those that are looked for where none is said: of each family the one that is used most.
-constexpr std::string_view kSearchedDictionaries[] = {"4X4_100",        "6X6_250",        "5X5_250",
-                                                      "7X7_250",        "ARUCO_ORIGINAL", "APRILTAG_36h11",
+constexpr std::string_view kSearchedDictionaries[] = {"4X4_100",       "6X6_250",        "5X5_250",
+                                                      "7X7_250",       "ARUCO_ORIGINAL", "APRILTAG_36h11",
                                                       "APRILTAG_25h9", "APRILTAG_16h5",  "APRILTAG_36h10"};
 constexpr int kMostMarkersUnsaid = 100;
 
@@ -187,7 +187,8 @@ cv::Point2d throughHomography(const cv::Mat& homography, double x, double y) {
 
 double sideOf(const SeenMarker& marker) {
     double longest = 0.0;
-    for (std::size_t i = 0; i < 4; ++i) longest = std::max(longest, cv::norm(marker.seen[i] - marker.seen[(i + 1) % 4]));
+    for (std::size_t i = 0; i < 4; ++i)
+        longest = std::max(longest, cv::norm(marker.seen[i] - marker.seen[(i + 1) % 4]));
     return longest;
 }
 
@@ -451,8 +452,9 @@ std::optional<BoardPoints> findBoard(const cv::Mat& grey, const CalibrationBoard
             found = findCharuco(grey, board);
         } else {
             const bool isChess = board.kind == CalibrationBoard::Kind::chess;
-            const auto seen = findEither(
-                grey, [&](const cv::Mat& picture) { return isChess ? findChess(picture, size) : findCircles(picture, size); });
+            const auto seen = findEither(grey, [&](const cv::Mat& picture) {
+                return isChess ? findChess(picture, size) : findCircles(picture, size);
+            });
             if (!seen.empty()) found = {pointsOf(board), {seen.begin(), seen.end()}};
         }
     } catch (const cv::Exception&) { // what looked like a board is none

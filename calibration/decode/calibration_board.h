@@ -20,7 +20,7 @@ struct CalibrationBoard {
     double spacing = 75.0; ///< side of a square; asymmetric circles: half the distance between neighbours of a row
     double marker = 0.0;   ///< ChArUco: side of a marker
     /// ChArUco: the dictionary of its markers as OpenCV names it, without DICT_; empty: found by itself.
-    std::string dictionary;
+    std::string dictionary = {};
     /// ChArUco with an even number of rows, as OpenCV printed it before 4.6: the upper left square is white and has a
     /// marker. Both layouts are found; the lab prints the one that is said.
     bool isOldLayout = false;

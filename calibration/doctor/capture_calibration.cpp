@@ -207,7 +207,8 @@ ProcamCalibration calibrateIntrinsicsFolder(const std::filesystem::path& folder,
             throw CaptureRefused({Cause::imageSize, "", name, "has another size than the pictures before it",
                                   "give pictures of one camera with one setting"});
         if (found[i]) {
-            if (const auto kind = checkBoardKind("", board, *found[i]); kind && views.empty()) warnings.push_back(*kind);
+            if (const auto kind = checkBoardKind("", board, *found[i]); kind && views.empty())
+                warnings.push_back(*kind);
             views.push_back({name, *found[i], {}});
         } else {
             warnings.push_back({Cause::boardNotFound, "", name,

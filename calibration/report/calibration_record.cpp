@@ -294,7 +294,8 @@ void addSizeDoubts(ProcamCalibration& result, const std::string& file) {
                       "%d x %d pixels",
                       what, device.lens[kPrincipalX], device.lens[kPrincipalY], device.size.width, device.size.height);
         const auto isSame = [&](const Finding& one) { return one.cause == cause && one.why == why.data(); };
-        if (std::ranges::none_of(result.warnings, isSame)) result.warnings.push_back({cause, "", file, why.data(), remedy});
+        if (std::ranges::none_of(result.warnings, isSame))
+            result.warnings.push_back({cause, "", file, why.data(), remedy});
     };
     constexpr double kFarOut = 0.3;   // of a side, from the middle: no camera's lens sits so far aside
     constexpr double kScaled = 0.125; // likewise, on both axes alike: a size that was scaled
@@ -305,9 +306,8 @@ void addSizeDoubts(ProcamCalibration& result, const std::string& file) {
     if (const CalibratedDevice& camera = result.camera; !camera.size.empty()) {
         const cv::Point2d aside = asideOf(camera);
         const bool isFar = std::abs(aside.x) > kFarOut || std::abs(aside.y) > kFarOut;
-        const bool isScaled =
-            aside.x * aside.y > 0.0 && std::min(std::abs(aside.x), std::abs(aside.y)) > kScaled &&
-            std::abs(aside.x - aside.y) < 0.2 * std::abs(aside.x + aside.y);
+        const bool isScaled = aside.x * aside.y > 0.0 && std::min(std::abs(aside.x), std::abs(aside.y)) > kScaled &&
+                              std::abs(aside.x - aside.y) < 0.2 * std::abs(aside.x + aside.y);
         if (isFar || isScaled)
             add(camera, Cause::imageSize, "camera",
                 "give the size of the pictures that it was calibrated with, or calibrate at this one");

@@ -32,7 +32,8 @@ inline constexpr int kCalibrationSchema = 1;
 /// Our JSON, as resources/guide/formats.md describes it. Throws InvalidInput for numbers that are not finite.
 [[nodiscard]] std::string calibrationText(const CalibrationRecord& record);
 /// Reads it back; what other programs leave out (figures of quality, views, beside a projector the camera's size) stays
-/// empty, and what is odd becomes a warning of the result. `name` stands in errors. Throws DataError naming the key and the remedy.
+/// empty, and what is odd becomes a warning of the result. `name` stands in errors. Throws DataError naming the key and
+/// the remedy.
 [[nodiscard]] CalibrationRecord parseCalibration(std::string_view text, const std::string& name);
 
 /// The same with the lengths of its board in millimetres, and those of T, of the poses and their errors with them.

@@ -106,14 +106,11 @@ constexpr std::array kNodeSpellings{
 /// The device in whose node an entry is.
 enum class Side { none, camera, projector };
 
-constexpr std::array kDeviceRoles{std::pair(Role::cameraMatrix, Role::projectorMatrix),
-                                  std::pair(Role::cameraDistortion, Role::projectorDistortion),
-                                  std::pair(Role::cameraModel, Role::projectorModel),
-                                  std::pair(Role::cameraType, Role::projectorType),
-                                  std::pair(Role::cameraWidth, Role::projectorWidth),
-                                  std::pair(Role::cameraHeight, Role::projectorHeight),
-                                  std::pair(Role::cameraSize, Role::projectorSize),
-                                  std::pair(Role::cameraRms, Role::projectorRms)};
+constexpr std::array kDeviceRoles{
+    std::pair(Role::cameraMatrix, Role::projectorMatrix), std::pair(Role::cameraDistortion, Role::projectorDistortion),
+    std::pair(Role::cameraModel, Role::projectorModel),   std::pair(Role::cameraType, Role::projectorType),
+    std::pair(Role::cameraWidth, Role::projectorWidth),   std::pair(Role::cameraHeight, Role::projectorHeight),
+    std::pair(Role::cameraSize, Role::projectorSize),     std::pair(Role::cameraRms, Role::projectorRms)};
 
 /// Lens models that are OpenCV's k1, k2, p1, p2, k3 (and terms that must then be 0), loosely spelled.
 constexpr std::string_view kBrownModels =
@@ -283,8 +280,8 @@ public:
                    Role::cameraType, "camera");
         result.camera.size = cameraSize(result, sizes.camera, !hasProjector);
         if (hasProjector) {
-            takeDevice(result, result.projector, Role::projectorMatrix, Role::projectorDistortion,
-                       Role::projectorModel, Role::projectorType, "projector");
+            takeDevice(result, result.projector, Role::projectorMatrix, Role::projectorDistortion, Role::projectorModel,
+                       Role::projectorType, "projector");
             result.projector.size = sizeOf(Role::projectorWidth, Role::projectorHeight, Role::projectorSize,
                                            sizes.projector, "projector", true);
             takeRig(record);
@@ -409,8 +406,7 @@ private:
         if (sides.empty() && !known.empty()) return known;
         if (sides.empty() && !must) return {};
         if (sides.empty())
-            refuseMissing(what + std::string("'s size"),
-                          "add " + std::string(what) + "_width and " + what + "_height");
+            refuseMissing(what + std::string("'s size"), "add " + std::string(what) + "_width and " + what + "_height");
         return wholeSize(sides[0], sides[1], line);
     }
 
@@ -474,10 +470,10 @@ private:
         const double length = std::hypot(rig[3], rig[4], rig[5]);
         if (!(length > 0.0) || length >= kLeastMillimetres) return;
         record.source.metresPerUnit = 1.0;
-        record.result.warnings.push_back({Cause::unlikelyLength, "", text_.placeOf(entries_.line(Role::translation)),
-                                          "T is " + shortNumber(length) +
-                                              " long and its unit is not said; it is taken in metres",
-                                          "write metres_per_unit beside it where that is wrong"});
+        record.result.warnings.push_back(
+            {Cause::unlikelyLength, "", text_.placeOf(entries_.line(Role::translation)),
+             "T is " + shortNumber(length) + " long and its unit is not said; it is taken in metres",
+             "write metres_per_unit beside it where that is wrong"});
     }
 
     /// 0, not known, where something else than one number stands there.
@@ -501,24 +497,21 @@ private:
 
 CalibrationRecord parseForeignCalibration(std::string_view text, const std::string& name, const KnownSizes& sizes) {
     const ForeignText parsed(text, name);
-    std::vector<Entries> documents;
-    for (const ForeignEntry& document : parsed.documents()) {
-        Entries entries(parsed);
-        entries.collect(document);
-        if (documents.empty() || entries.has(Role::cameraMatrix)) documents.push_back(std::move(entries));
-    }
-    // An echo repeats itself; what comes before the first matrix is none.
-    if (documents.size() > 1 && !documents.front().has(Role::cameraMatrix)) documents.erase(documents.begin());
-    const Entries& first = documents.front();
+    std::optional<Entries> first; // that has a matrix: an echo repeats itself
     std::optional<Finding> differs;
-    for (const Entries& other : documents)
-        if (&other != &first && parsed.numbersOf(other.at(Role::cameraMatrix)) !=
-                                    parsed.numbersOf(first.at(Role::cameraMatrix)))
+    for (const ForeignEntry& document : parsed.documents()) {
+        Entries other(parsed);
+        other.collect(document);
+        if (!other.has(Role::cameraMatrix)) continue;
+        if (!first)
+            first.emplace(std::move(other));
+        else if (parsed.numbersOf(other.at(Role::cameraMatrix)) != parsed.numbersOf(first->at(Role::cameraMatrix)))
             differs = Finding{Cause::passedOver, "", parsed.placeOf(other.line(Role::cameraMatrix)),
                               "holds another camera's matrix than line " +
-                                  std::to_string(first.line(Role::cameraMatrix)) + ", and was passed over",
+                                  std::to_string(first->line(Role::cameraMatrix)) + ", and was passed over",
                               "give each camera a file of its own"};
-    CalibrationRecord record = ForeignCalibration(parsed, first).take(sizes);
+    }
+    CalibrationRecord record = ForeignCalibration(parsed, first.value_or(Entries(parsed))).take(sizes);
     if (differs) record.result.warnings.push_back(*differs);
     return record;
 }

@@ -393,7 +393,10 @@ ForeignText::ForeignText(std::string_view text, std::string name) : text_(text),
         if (at != std::string_view::npos) ++at;
     }
     const std::string_view said = trimmedOf(text_, kSpace);
-    if (said.starts_with('<')) return Xml(*this).read();
+    if (said.starts_with('<')) {
+        Xml(*this).read();
+        return;
+    }
     if (said.starts_with('{'))
         if (const std::string problem = jsonProblem(text_, {.bytes = kMostForeignBytes, .depth = kDeepestEntry});
             !problem.empty())
@@ -402,8 +405,7 @@ ForeignText::ForeignText(std::string_view text, std::string name) : text_(text),
 }
 
 void ForeignText::refuse(std::size_t line, const std::string& why) const {
-    throw DataError(placeOf(line), why,
-                    "write it as OpenCV's FileStorage does, or export it as JSON from Lumorph");
+    throw DataError(placeOf(line), why, "write it as OpenCV's FileStorage does, or export it as JSON from Lumorph");
 }
 
 std::size_t ForeignText::lineAt(const char* place) const {

@@ -8,12 +8,12 @@
 
 namespace lumorph {
 
-/// One entry of a text file of another program: YAML, XML or JSON, as one tree. Texts are parts of what was parsed, which
-/// must outlive them.
+/// One entry of a text file of another program: YAML, XML or JSON, as one tree. Texts are parts of what was parsed,
+/// which must outlive them.
 struct ForeignEntry {
-    std::string_view key;       ///< empty: an element of a list, or a whole document
-    std::string_view value;     ///< as in the text, with quotes and brackets; empty where there are `children`
-    std::size_t line = 0;       ///< of the key
+    std::string_view key;   ///< empty: an element of a list, or a whole document
+    std::string_view value; ///< as in the text, with quotes and brackets; empty where there are `children`
+    std::size_t line = 0;   ///< of the key
     std::vector<ForeignEntry> children;
     [[nodiscard]] const ForeignEntry* child(std::string_view name) const;
 };

@@ -52,7 +52,9 @@ std::string quotedWord(const std::string& word) {
 std::string calibrationYaml(const CalibrationRecord& record) {
     const ProcamCalibration& result = record.result;
     std::string text = "%YAML:1.0\n---\n";
-    const auto number = [&text](const char* key, double value) { text += std::string(key) + ": " + exactText(value) + "\n"; };
+    const auto number = [&text](const char* key, double value) {
+        text += std::string(key) + ": " + exactText(value) + "\n";
+    };
     const auto error = [&number](const char* key, double value) {
         if (std::isfinite(value) && whereSaid(value)) number(key, value);
     };

@@ -234,8 +234,8 @@ QString nextPoseWords(const CalibrationState& state) {
 /// What of a calibration from a file would be used.
 QString importWords(const CalibrationResult& result) {
     const bool hasPlace = !tableViewsOf(result.solved).empty();
-    QString words = result.solved.projector.size.empty() ? tr("It has a camera alone.")
-                                                         : tr("It has a projector and a camera.");
+    QString words =
+        result.solved.projector.size.empty() ? tr("It has a camera alone.") : tr("It has a projector and a camera.");
     words += ' ' + (hasPlace ? tr("Lenses and places are taken over; what the file does not say is unknown.")
                              : tr("It has no pose of a board, so lenses alone are taken over; where the devices stand "
                                   "stays as it is."));
@@ -253,7 +253,8 @@ NextStep solvedNext(const CalibrationState& state) {
                                : tr("How far it can be trusted needs more poses.");
     if (state.isUsed()) {
         next.title = tr("Calibrated, and in use");
-        next.text = (state.isImported && !result.millimetres() ? QString() : within + ' ') + tr("Undo takes it back; in Versions it can be compared with those before.");
+        next.text = (state.isImported && !result.millimetres() ? QString() : within + ' ') +
+                    tr("Undo takes it back; in Versions it can be compared with those before.");
         return next;
     }
     next.what = Do::use;

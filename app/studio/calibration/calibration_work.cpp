@@ -10,7 +10,7 @@
 namespace lumorph::studio {
 namespace {
 
-constexpr int kSearchWidth = 640;     // pixels; the live picture's board is found in a smaller one
+constexpr int kSearchWidth = 640; // pixels; the live picture's board is found in a smaller one
 
 } // namespace
 

@@ -202,7 +202,7 @@ private:
         headlineWords_->setText(!hasProjector ? "A camera alone casts no light; the file has no projector."
                                 : within && isImported
                                     ? "Light lands no farther beside on the file's boards, in 95 of 100 cases."
-                                : within     ? "Light lands no farther beside where the device stands, in 95 of 100 cases."
+                                : within ? "Light lands no farther beside where the device stands, in 95 of 100 cases."
                                 : isImported ? "The file does not say how far light lands beside."
                                              : "With more poses the studio can tell how far light lands beside.");
         const auto millimetres = [](const std::optional<double>& value) {
@@ -230,7 +230,8 @@ private:
                                                   .arg(solved.projector.lens[kPrincipalX], 0, 'f', 1)
                                                   .arg(solved.projector.lens[kPrincipalY], 0, 'f', 1)
                                             : QString());
-        set("lenses", QString::fromStdString(solved.camera.model + (hasProjector ? "; " + solved.projector.model : "")));
+        set("lenses",
+            QString::fromStdString(solved.camera.model + (hasProjector ? "; " + solved.projector.model : "")));
         const QDateTime date = QDateTime::fromString(QString::fromStdString(result.date), Qt::ISODate).toLocalTime();
         set("date", date.isValid() ? QLocale().toString(date, QLocale::ShortFormat) : QString("unknown"));
     }
