@@ -42,9 +42,11 @@ CalibrationRecord readCalibration(const std::filesystem::path& file, const Known
                            "is none of .json, .yaml, .yml, .xml and .txt", "choose another file, or name it so");
     const std::vector<std::byte> bytes = readFile(file, kMostFileBytes);
     const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
-    // Ours says so; other programs write JSON too.
-    const bool isOurs = ending == ".json" && (text.find("\"lumorph\"") != std::string_view::npos ||
-                                              text.find('{') == std::string_view::npos);
+    // Ours says so; other programs write JSON too, and some put XML into a file of that name.
+    const bool isObject = text.find('{') != std::string_view::npos && text.find('{') < text.find('<');
+    const bool isForeign =
+        text.find("\"lumorph\"") == std::string_view::npos && (isObject || text.find('<') != std::string_view::npos);
+    const bool isOurs = ending == ".json" && !isForeign;
     return isOurs ? parseCalibration(text, file.string()) : parseForeignCalibration(text, file.string(), sizes);
 }
 

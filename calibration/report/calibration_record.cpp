@@ -55,7 +55,7 @@ json jsonOf(const CalibratedDevice& device) {
         {"model", device.model}};
     // What nobody said is left out, so that whoever reads it takes no 0 for exact.
     if (!device.size.empty()) document["size"] = {device.size.width, device.size.height};
-    if (whereSaid(device.rms)) document["rms"] = device.rms;
+    if (device.rms != 0.0) document["rms"] = device.rms;
     if (isAnySaid(device.sigma)) document["sigma"] = sigma;
     return document;
 }
@@ -346,7 +346,7 @@ std::string calibrationText(const CalibrationRecord& record) {
                      {"warnings", warnings},
                      {"degenerate", result.degenerate}};
     if (source.isSimulated) document["simulated"] = true;
-    if (whereSaid(result.rms)) document["rms"] = result.rms;
+    if (result.rms != 0.0) document["rms"] = result.rms;
     if (!result.projector.size.empty()) {
         const PoseVector& rig = result.projectorFromCamera;
         const PoseVector& sigma = result.projectorFromCameraSigma;

@@ -158,7 +158,7 @@ TEST(ForeignCalibration, RosIsReadAsFileMessageAndEcho) {
     expectCamera(two.camera, "the first of two");
     ASSERT_EQ(two.warnings.size(), 1U);
     EXPECT_EQ(two.warnings[0].cause, Cause::passedOver);
-    EXPECT_THAT(two.warnings[0].file, HasSubstr("ros.yaml, line 26"));
+    EXPECT_THAT(two.warnings[0].file, HasSubstr("ros.yaml, line 28"));
 }
 
 TEST(ForeignCalibration, KalibrCamchainIsReadAndItsFurtherCamerasAreNamed) {
@@ -329,8 +329,11 @@ CalibrationRecord roomRecord(double metresPerUnit) {
     record.source.board = metresPerUnit == 1.0 ? "chess:9x7:0.025" : "chess:9x7:25";
     ProcamCalibration& result = record.result;
     result.projector.size = {projector.size.x, projector.size.y};
-    result.projector.lens = {projector.focal.x, projector.focal.y / projector.focal.x, projector.principal.x,
-                             projector.principal.y};
+    result.projector.lens = {projector.focal.x,       projector.focal.y / projector.focal.x,
+                             projector.principal.x,   projector.principal.y,
+                             projector.distortion[0], projector.distortion[1],
+                             projector.distortion[2], projector.distortion[3],
+                             projector.distortion[4]};
     result.camera = result.projector;
     // The camera stands 300 mm beside the projector and looks the same way; the board lies on the table.
     result.projectorFromCamera = {0.0, 0.0, 0.0, 0.3 / metresPerUnit, 0.0, 0.0};
