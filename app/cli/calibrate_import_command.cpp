@@ -33,7 +33,7 @@ struct Imported {
     bool hasPlaces = false; ///< it has poses of a board, which tell where the devices stand
 };
 
-KnownSizes sizesOf(const ImportArguments& arguments, const Installation& room) {
+KnownSizes knownSizesFor(const ImportArguments& arguments, const Installation& room) {
     KnownSizes sizes;
     if (arguments.number <= room.projectors.size()) {
         const glm::ivec2 size = room.projectors[arguments.number - 1].camera.size;
@@ -47,7 +47,7 @@ KnownSizes sizesOf(const ImportArguments& arguments, const Installation& room) {
 
 Imported importFile(const ImportArguments& arguments, const Installation& room) {
     Imported imported;
-    imported.record = inMillimetres(readCalibration(arguments.file, sizesOf(arguments, room)));
+    imported.record = inMillimetres(readCalibration(arguments.file, knownSizesFor(arguments, room)));
     const CalibrationRecord& record = imported.record;
     CalibrationBoard board;
     try {
@@ -69,12 +69,12 @@ Imported importFile(const ImportArguments& arguments, const Installation& room) 
     return imported;
 }
 
-nlohmann::json placeOf(const CalibratedCamera& camera) {
+nlohmann::json roomPlaceOf(const CalibratedCamera& camera) {
     const glm::dvec3 at = positionOf(camera);
     return {at.x, at.y, at.z};
 }
 
-nlohmann::json jsonOf(const Imported& imported, const ImportArguments& arguments) {
+nlohmann::json importedJson(const Imported& imported, const ImportArguments& arguments) {
     const ProcamCalibration& result = imported.record.result;
     const bool hasProjector = !result.projector.size.empty();
     nlohmann::json all = {{"camera", jsonOf(result.camera)},
@@ -92,12 +92,12 @@ nlohmann::json jsonOf(const Imported& imported, const ImportArguments& arguments
     }
     all["room"] = nullptr;
     if (!imported.hasPlaces) return all;
-    all["room"] = {{"camera", placeOf(imported.room.cameras.front().camera)}};
-    if (hasProjector) all["room"]["projector"] = placeOf(imported.room.projectors[arguments.number - 1].camera);
+    all["room"] = {{"camera", roomPlaceOf(imported.room.cameras.front().camera)}};
+    if (hasProjector) all["room"]["projector"] = roomPlaceOf(imported.room.projectors[arguments.number - 1].camera);
     return all;
 }
 
-void print(const Imported& imported, const ImportArguments& arguments) {
+void printImported(const Imported& imported, const ImportArguments& arguments) {
     const ProcamCalibration& result = imported.record.result;
     const bool hasProjector = !result.projector.size.empty();
     printDevice("camera", result.camera);
@@ -143,9 +143,9 @@ void importCalibration(const ImportArguments& arguments) {
         writeProject(project, projectFile(arguments.project));
     }
     if (arguments.json)
-        printJson(jsonOf(imported, arguments));
+        printJson(importedJson(imported, arguments));
     else
-        print(imported, arguments);
+        printImported(imported, arguments);
 }
 
 } // namespace

@@ -122,12 +122,10 @@ cv::Mat evenlyLit(const cv::Mat& grey) {
     return even;
 }
 
-/// In the picture, and where nothing is found in its negative.
-template <typename Find> std::vector<cv::Point2f> findEither(const cv::Mat& grey, const Find& find) {
-    if (std::vector<cv::Point2f> found = find(grey); !found.empty()) return found;
+cv::Mat negativeOf(const cv::Mat& grey) {
     cv::Mat negative;
     cv::bitwise_not(grey, negative);
-    return find(negative);
+    return negative;
 }
 
 std::vector<cv::Point2f> findChess(const cv::Mat& grey, cv::Size size) {
@@ -293,6 +291,15 @@ bool tellsPose(const CalibrationBoard& board, const BoardPoints& points) {
     return isOther(&cv::Point3d::x) && isOther(&cv::Point3d::y);
 }
 
+/// A chessboard in the fast way alone: white on black is rare, and most pictures without a board have none.
+std::vector<cv::Point2f> findWhiteOnBlack(const cv::Mat& grey, cv::Size size, bool isChess) {
+    const cv::Mat negative = negativeOf(grey);
+    if (!isChess) return findCircles(negative, size);
+    std::vector<cv::Point2f> corners;
+    if (!cv::findChessboardCornersSB(negative, size, corners, cv::CALIB_CB_ACCURACY)) return {};
+    return corners;
+}
+
 /// With markers of one dictionary, in the layout in which more of them lie as they should.
 BoardPoints findWith(const cv::Mat& grey, CalibrationBoard board, const NamedDictionary& dictionary) {
     if (markersOn(board) > dictionary.markers) return {};
@@ -319,12 +326,10 @@ BoardPoints findCharuco(const cv::Mat& grey, const CalibrationBoard& board) {
     if (const NamedDictionary* said = dictionaryNamed(board.dictionary)) wanted.push_back(said);
     for (const std::string_view name : kSearchedDictionaries)
         if (wanted.empty() || familyOf(name) != familyOf(wanted.front()->name)) wanted.push_back(dictionaryNamed(name));
-    cv::Mat negative;
     for (const bool isNegative : {false, true}) {
-        if (isNegative) cv::bitwise_not(grey, negative);
+        const cv::Mat picture = isNegative ? negativeOf(grey) : grey;
         for (const NamedDictionary* dictionary : wanted)
-            if (BoardPoints found = findWith(isNegative ? negative : grey, board, *dictionary); !found.seen.empty())
-                return found;
+            if (BoardPoints found = findWith(picture, board, *dictionary); !found.seen.empty()) return found;
     }
     return {};
 }
@@ -452,9 +457,8 @@ std::optional<BoardPoints> findBoard(const cv::Mat& grey, const CalibrationBoard
             found = findCharuco(grey, board);
         } else {
             const bool isChess = board.kind == CalibrationBoard::Kind::chess;
-            const auto seen = findEither(grey, [&](const cv::Mat& picture) {
-                return isChess ? findChess(picture, size) : findCircles(picture, size);
-            });
+            std::vector<cv::Point2f> seen = isChess ? findChess(grey, size) : findCircles(grey, size);
+            if (seen.empty()) seen = findWhiteOnBlack(grey, size, isChess);
             if (!seen.empty()) found = {pointsOf(board), {seen.begin(), seen.end()}};
         }
     } catch (const cv::Exception&) { // what looked like a board is none
