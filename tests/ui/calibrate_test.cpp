@@ -243,7 +243,7 @@ constexpr auto kFisheye = "image_width: 1280\nimage_height: 960\ndistortion_mode
 
 TEST_F(Calibrate, ImportedFileEndsWithAButtonThatUsesItAndSaysNoMoreThanTheFile) {
     Window& w = *window;
-    const auto import = [&](const char* name, const char* text) {
+    const auto importText = [&](const char* name, const char* text) {
         std::ofstream(w.folder / name) << text;
         w.studio.studio().commands.find("calibrate.import")->trigger();
         answerFileDialog(w.studio, "calibrate.import.file", w.folder / name, "Open");
@@ -252,7 +252,7 @@ TEST_F(Calibrate, ImportedFileEndsWithAButtonThatUsesItAndSaysNoMoreThanTheFile)
     w.studio.click("calibrate.way.lab");
     const double before = w.projector().camera.focal.x;
     const glm::dvec3 place = positionOf(w.projector().camera);
-    import("calibration.xml", kSlStudio);
+    importText("calibration.xml", kSlStudio);
     ASSERT_TRUE(w.offers("Use this calibration", 20s)) << w.story();
     EXPECT_EQ(w.title(), "A calibration from a file");
     EXPECT_EQ(w.step("camera"), "Good");
@@ -272,19 +272,19 @@ TEST_F(Calibrate, ImportedFileEndsWithAButtonThatUsesItAndSaysNoMoreThanTheFile)
     w.studio.studio().document.undoStack().undo();
     EXPECT_TRUE(w.offers("Use this calibration", 10s)) << w.story();
     EXPECT_EQ(w.projector().camera.focal.x, before);
-    import("again.xml", kSlStudio);
+    importText("again.xml", kSlStudio);
     w.studio.studio().document.undoStack().redo();
     EXPECT_TRUE(eventually([&] { return w.title() == "Calibrated, and in use"; }, 10s)) << w.story();
     w.studio.studio().document.undoStack().undo();
 
-    import("fisheye.yaml", kFisheye);
+    importText("fisheye.yaml", kFisheye);
     ASSERT_TRUE(eventually([&] { return w.notices() == 1; }, 10s));
     const studio::Notice notice = w.studio.studio().notices.at("calibrate").front();
     EXPECT_TRUE(notice.subject.contains("fisheye.yaml, line 3")) << notice.subject.toStdString();
     EXPECT_TRUE(notice.why.contains("equidistant")) << notice.why.toStdString();
     EXPECT_EQ(w.title(), "A calibration from a file") << "the result before stays";
 
-    import("camera.yaml", kCameraAlone);
+    importText("camera.yaml", kCameraAlone);
     ASSERT_TRUE(eventually([&] { return w.step("projector") == "Not begun"; }, 10s)) << w.story();
     EXPECT_EQ(w.notices(), 0U) << "the error of the file before is gone";
     EXPECT_EQ(w.studio.text("calibrate.step.projector.words"), "Not in this file");
