@@ -305,6 +305,7 @@ void addCalibrateCommands(CLI::App& app, Session& session) {
     command->add_flag("--json", alone->json, "Print one JSON value");
     command->callback([alone, &session] { intrinsics(*alone, session); });
 
+    addCalibrateImport(*group);
     addCalibrateBudget(*group, session);
     addCalibrateStages(*group, session);
     addCalibrateTracking(*group, session);

@@ -1,10 +1,12 @@
 #include "app/cli/calibrate_output.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <string>
 
+#include "calibration/report/calibration_record.h"
 #include "core/base/error.h"
 
 namespace lumorph::cli {
@@ -26,21 +28,27 @@ nlohmann::json jsonOf(const CalibratedDevice& device) {
     const Lens& sigma = device.sigma;
     const double fy = lens[kFocalLength] * lens[kAspect];
     const double fySigma = std::hypot(sigma[kFocalLength] * lens[kAspect], lens[kFocalLength] * sigma[kAspect]);
-    return {{"K", {{lens[kFocalLength], 0.0, lens[kPrincipalX]}, {0.0, fy, lens[kPrincipalY]}, {0.0, 0.0, 1.0}}},
-            {"distortion", {lens[kK1], lens[kK2], lens[kP1], lens[kP2], lens[kK3]}},
-            {"size", {device.size.width, device.size.height}},
-            {"rms", device.rms},
-            {"model", device.model},
-            {"sigma",
-             {{"fx", sigma[kFocalLength]},
-              {"fy", fySigma},
-              {"cx", sigma[kPrincipalX]},
-              {"cy", sigma[kPrincipalY]},
-              {"k1", sigma[kK1]},
-              {"k2", sigma[kK2]},
-              {"p1", sigma[kP1]},
-              {"p2", sigma[kP2]},
-              {"k3", sigma[kK3]}}}};
+    const bool hasSigma = std::ranges::any_of(sigma, [](double one) { return one != 0.0; });
+    nlohmann::json all = {
+        {"K", {{lens[kFocalLength], 0.0, lens[kPrincipalX]}, {0.0, fy, lens[kPrincipalY]}, {0.0, 0.0, 1.0}}},
+        {"distortion", {lens[kK1], lens[kK2], lens[kP1], lens[kP2], lens[kK3]}},
+        {"size", {device.size.width, device.size.height}},
+        {"rms", jsonOf(whereSaid(device.rms))},
+        {"model", device.model},
+        {"sigma",
+         {{"fx", sigma[kFocalLength]},
+          {"fy", fySigma},
+          {"cx", sigma[kPrincipalX]},
+          {"cy", sigma[kPrincipalY]},
+          {"k1", sigma[kK1]},
+          {"k2", sigma[kK2]},
+          {"p1", sigma[kP1]},
+          {"p2", sigma[kP2]},
+          {"k3", sigma[kK3]}}}};
+    // Of a file of another program, what it does not say.
+    if (!hasSigma) all["sigma"] = nullptr;
+    if (device.size.empty()) all["size"] = nullptr;
+    return all;
 }
 
 nlohmann::json jsonOf(const std::vector<Finding>& findings) {
@@ -114,11 +122,21 @@ void LabApply::checkRoom(const std::string& project, const Installation& room) c
 void printDevice(const char* name, const CalibratedDevice& device) {
     const Lens& lens = device.lens;
     const Lens& sigma = device.sigma;
-    std::printf("%-10s %d x %d, model %s, RMS %.3f pixels\n", name, device.size.width, device.size.height,
-                device.model.c_str(), device.rms);
-    std::printf("  focal length    %9.2f +- %.2f pixels\n", lens[kFocalLength], sigma[kFocalLength]);
-    std::printf("  principal point %9.2f +- %.2f, %.2f +- %.2f pixels\n", lens[kPrincipalX], sigma[kPrincipalX],
-                lens[kPrincipalY], sigma[kPrincipalY]);
+    const auto figure = [](double value, double uncertainty, const char* format) {
+        std::array<char, 80> text{};
+        const int length = std::snprintf(text.data(), text.size(), format, value);
+        const auto rest = text.size() - static_cast<std::size_t>(length);
+        if (whereSaid(uncertainty)) std::snprintf(text.data() + length, rest, " +- %.2f", uncertainty);
+        return std::string(text.data());
+    };
+    const std::string size = device.size.empty()
+                                 ? "size unknown"
+                                 : std::to_string(device.size.width) + " x " + std::to_string(device.size.height);
+    const std::string rms = whereSaid(device.rms) ? figure(device.rms, 0.0, "%.3f pixels") : "unknown";
+    std::printf("%-10s %s, model %s, RMS %s\n", name, size.c_str(), device.model.c_str(), rms.c_str());
+    std::printf("  focal length    %s pixels\n", figure(lens[kFocalLength], sigma[kFocalLength], "%9.2f").c_str());
+    std::printf("  principal point %s, %s pixels\n", figure(lens[kPrincipalX], sigma[kPrincipalX], "%9.2f").c_str(),
+                figure(lens[kPrincipalY], sigma[kPrincipalY], "%.2f").c_str());
     std::printf("  k1 %.4f  k2 %.4f  p1 %.5f  p2 %.5f  k3 %.4f\n", lens[kK1], lens[kK2], lens[kP1], lens[kP2],
                 lens[kK3]);
 }

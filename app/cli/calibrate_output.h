@@ -15,7 +15,8 @@
 namespace lumorph::cli {
 
 inline constexpr const char* kBoardHelp =
-    "The board: chess:9x7:75 (inner corners, side of a square), circles:4x11:20, charuco:5x7:30:22";
+    "The board: chess:9x7:75 (inner corners, side of a square), circles:4x11:20, charuco:5x7:30:22, and with the "
+    "dictionary of its markers charuco:5x7:30:22:6X6_250";
 inline constexpr double kDegreesPerRadian = 57.29577951308232;
 
 [[nodiscard]] nlohmann::json jsonOf(const Finding& finding);

@@ -34,6 +34,7 @@ using FolderCommand = std::function<void(const std::string& folder, bool json)>;
 [[nodiscard]] FolderCommand addDeviceFolder(CLI::App& command, const Session& session);
 /// Into the group of the calibrate commands.
 void addCalibrateBudget(CLI::App& group, Session& session);
+void addCalibrateImport(CLI::App& group);
 void addCalibrateStages(CLI::App& group, Session& session);
 void addCalibrateTracking(CLI::App& group, Session& session);
 void addLabCommands(CLI::App& app, Session& session);

@@ -152,7 +152,8 @@ void addLabCommands(CLI::App& app, Session& session) {
                         "(default: the virtual lab's installation)");
     command->add_option("--board", arguments->board,
                         "The board, millimetres: chess:9x7:25 (inner corners, side of a square), circles:4x11:20, "
-                        "charuco:5x7:30:22");
+                        "charuco:5x7:30:22, charuco:6x8:30:22:6X6_250, charuco:6x8:30:22:old (as OpenCV printed even "
+                        "numbers of rows before 4.6)");
     command->add_option("--device", arguments->device,
                         "A rig, photographed in place of a board: at rest, and with each actuator raised");
     command->add_option("--poses", arguments->poses, "How many; the first lies flat on the table")

@@ -188,6 +188,7 @@ ReadPose readPose(const CapturedView& view, const std::vector<cv::Mat>& images, 
                                  "the patterns can be read on too little of the board",
                                  "bring the board into the projector's light, expose for longer, darken the room"});
     troubles.add(checkExposure(view.name, read.decoded, found->seen));
+    troubles.add(checkBoardKind(view.name, board, *found));
     read.warnings = troubles.take();
     return read;
 }
@@ -206,7 +207,11 @@ ReadCapture readPoses(const std::vector<CapturedView>& poses, const CalibrationB
     capture.camera = read.front().size;
     for (FolderPose& view : read) {
         capture.views.push_back(std::move(view.observations));
-        capture.warnings.insert(capture.warnings.end(), view.warnings.begin(), view.warnings.end());
+        for (const Finding& warning : view.warnings) { // the same board in all poses is named once
+            const bool isRepeated = warning.cause == Cause::boardKind &&
+                                    std::ranges::count(capture.warnings, Cause::boardKind, &Finding::cause) > 0;
+            if (!isRepeated) capture.warnings.push_back(warning);
+        }
     }
     return capture;
 }
@@ -352,12 +357,15 @@ ProcamCalibration calibrateIntrinsicsFolder(const std::filesystem::path& folder,
         if (sizes[i] != sizes.front())
             throw CaptureRefused({Cause::imageSize, "", name, "has another size than the pictures before it",
                                   "give pictures of one camera with one setting"});
-        if (found[i])
+        if (found[i]) {
+            if (const auto kind = checkBoardKind("", board, *found[i]); kind && views.empty())
+                warnings.push_back(*kind);
             views.push_back({name, *found[i], {}});
-        else
+        } else {
             warnings.push_back({Cause::boardNotFound, "", name,
                                 "the board cannot be found, so the picture was left out",
                                 "check that all of the board is sharp and in the picture"});
+        }
     }
     if (views.empty())
         throw CaptureRefused({Cause::boardNotFound, "", "", "the board is found in none of the pictures",

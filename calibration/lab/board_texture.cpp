@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include <opencv2/aruco/charuco.hpp>
+#include <opencv2/aruco.hpp>
 
 namespace lumorph {
 
@@ -13,7 +13,6 @@ constexpr float kPaper = 0.85F;
 constexpr float kInk = 0.08F;
 constexpr double kMargin = 0.75;      // of the spacing
 constexpr double kCircleRadius = 0.4; // of the spacing
-constexpr int kMarkerCells = 6;       // a side, border included
 
 cv::Rect2d grown(const cv::Rect2d& box, double by) {
     return {box.x - by, box.y - by, box.width + 2.0 * by, box.height + 2.0 * by};
@@ -35,33 +34,23 @@ BoardTexture::BoardTexture(const CalibrationBoard& board) : board_(board) {
 }
 
 void BoardTexture::addMarkers() {
-    const auto dictionary = cv::aruco::getPredefinedDictionary(cv::aruco::DICT_4X4_50);
-    const auto charuco = cv::aruco::CharucoBoard::create(
-        board_.columns, board_.rows, static_cast<float>(board_.spacing), static_cast<float>(board_.marker), dictionary);
+    const auto dictionary = cv::aruco::getPredefinedDictionary(markerDictionaryOf(board_));
+    markerCells_ = dictionary->markerSize + 2; // with the border
     markerOfSquare_.assign(static_cast<std::size_t>(board_.columns * board_.rows), -1);
-    for (std::size_t i = 0; i < charuco->ids.size(); ++i) {
-        const auto at = [&](std::size_t corner) {
-            const cv::Point3f& point = charuco->objPoints[i][corner];
-            return cv::Point2d(point.x, point.y);
-        };
-        Marker marker{at(0), at(1) - at(0), at(3) - at(0), {}};
-        cv::aruco::drawMarker(dictionary, charuco->ids[i], kMarkerCells, marker.cells, 1);
-        const cv::Point2d middle = marker.corner + 0.5 * (marker.along + marker.down);
-        const int square =
-            static_cast<int>(middle.y / board_.spacing) * board_.columns + static_cast<int>(middle.x / board_.spacing);
-        markerOfSquare_.at(static_cast<std::size_t>(square)) = static_cast<int>(i);
-        // Along its row and down as it is read: their cross product points away from the reader.
-        printedSide_ = marker.along.cross(marker.down) > 0.0 ? -1 : 1;
+    for (const cv::Point& square : markerSquaresOf(board_)) {
+        const double edge = 0.5 * (board_.spacing - board_.marker);
+        Marker marker{{board_.spacing * square.x + edge, board_.spacing * square.y + edge}, {}};
+        const auto number = static_cast<int>(markers_.size());
+        cv::aruco::drawMarker(dictionary, number, markerCells_, marker.cells, 1);
+        markerOfSquare_.at(static_cast<std::size_t>(square.y * board_.columns + square.x)) = number;
         markers_.push_back(marker);
     }
 }
 
 bool BoardTexture::isMarkerInk(const Marker& marker, double x, double y) const noexcept {
-    const cv::Point2d way(x - marker.corner.x, y - marker.corner.y);
-    const double side = board_.marker * board_.marker;
-    const double column = kMarkerCells * way.dot(marker.along) / side;
-    const double row = kMarkerCells * way.dot(marker.down) / side;
-    if (column < 0.0 || row < 0.0 || column >= kMarkerCells || row >= kMarkerCells) return false;
+    const double column = markerCells_ * (x - marker.corner.x) / board_.marker;
+    const double row = markerCells_ * (y - marker.corner.y) / board_.marker;
+    if (column < 0.0 || row < 0.0 || column >= markerCells_ || row >= markerCells_) return false;
     return marker.cells(static_cast<int>(row), static_cast<int>(column)) == 0;
 }
 

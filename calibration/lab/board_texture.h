@@ -18,15 +18,15 @@ public:
     [[nodiscard]] const cv::Rect2d& page() const noexcept { return page_; }
     /// The pattern's points, the first and last of each side.
     [[nodiscard]] const cv::Rect2d& points() const noexcept { return points_; }
-    /// 1: the printed side looks to the frame's +z; -1: to -z.
-    [[nodiscard]] int printedSide() const noexcept { return printedSide_; }
+    /// -1: the printed side looks to the frame's -z, since y runs down the page.
+    [[nodiscard]] static constexpr int printedSide() noexcept { return -1; }
     /// Diffuse albedo at a place on the page.
     [[nodiscard]] float albedo(double x, double y) const noexcept;
 
 private:
-    /// A marker in its square: its corner, the way along its first row and the way down, each the whole side long.
+    /// A marker in its square, and its upper left corner.
     struct Marker {
-        cv::Point2d corner, along, down;
+        cv::Point2d corner;
         cv::Mat1b cells; ///< black 0; with its border
     };
 
@@ -36,7 +36,7 @@ private:
 
     CalibrationBoard board_;
     cv::Rect2d page_, points_;
-    int printedSide_ = -1;
+    int markerCells_ = 6; ///< a side, with the border
     std::vector<Marker> markers_;
     std::vector<int> markerOfSquare_; ///< ChArUco, row after row; -1: a black square
 };

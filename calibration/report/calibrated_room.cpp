@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include <glm/geometric.hpp>
 #include <glm/mat3x3.hpp>
@@ -132,6 +133,76 @@ Installation withCalibration(Installation installation, const ProcamCalibration&
     }
     checkInstallation(installation);
     return installation;
+}
+
+Installation withImport(Installation installation, const ProcamCalibration& result, const CalibrationBoard& board,
+                        const RoomPlacement& placement) {
+    if (!tableViewsOf(result).empty()) return withCalibration(std::move(installation), result, board, placement);
+    const Origin origin{Origin::Way::measured, "read from a file", placement.date.empty() ? utcDate() : placement.date};
+    const auto takeLens = [](CalibratedCamera& camera, const CalibratedDevice& device) {
+        const glm::dmat4 pose = camera.cameraFromWorld;
+        camera = cameraOf(device);
+        camera.cameraFromWorld = pose;
+    };
+    const bool hasProjector = !result.projector.size.empty();
+    if (hasProjector) {
+        InstalledProjector& projector = deviceAt(installation.projectors, placement.projector, "projector");
+        takeLens(projector.camera, result.projector);
+        projector.lens = origin;
+    }
+    if (!hasProjector && installation.cameras.empty()) {
+        installation.cameras.emplace_back();
+        const Installation usual = defaultInstallation();
+        const auto& projectors = installation.projectors.empty() ? usual.projectors : installation.projectors;
+        installation.cameras.front().camera.cameraFromWorld = projectors.front().camera.cameraFromWorld;
+    }
+    if (placement.camera < installation.cameras.size() && !result.camera.size.empty()) {
+        InstalledCamera& camera = installation.cameras[placement.camera];
+        takeLens(camera.camera, result.camera);
+        camera.lens = origin;
+    }
+    checkInstallation(installation);
+    return installation;
+}
+
+bool hasSameFigures(const Installation& room, const Installation& made, bool ofProjector, std::size_t index) {
+    const auto isSame = [](const CalibratedCamera& one, const CalibratedCamera& other) {
+        constexpr double kPixels = 1e-6, kTerms = 1e-9, kMetres = 1e-7;
+        const auto near = [](const auto& a, const auto& b, int count, double tolerance) {
+            for (int i = 0; i < count; ++i)
+                if (!(std::abs(a[i] - b[i]) <= tolerance)) return false;
+            return true;
+        };
+        bool same = one.size == other.size && near(one.focal, other.focal, 2, kPixels) &&
+                    near(one.principal, other.principal, 2, kPixels);
+        for (std::size_t i = 0; i < one.distortion.size(); ++i)
+            same = same && std::abs(one.distortion[i] - other.distortion[i]) <= kTerms;
+        for (int column = 0; column < 4; ++column)
+            same = same && near(one.cameraFromWorld[column], other.cameraFromWorld[column], 4, kMetres);
+        return same;
+    };
+    if (ofProjector)
+        return index < room.projectors.size() && index < made.projectors.size() &&
+               isSame(room.projectors[index].camera, made.projectors[index].camera);
+    return index < room.cameras.size() && index < made.cameras.size() &&
+           isSame(room.cameras[index].camera, made.cameras[index].camera);
+}
+
+std::optional<double> heldOutMillimetresOf(const ProcamCalibration& result) {
+    constexpr double kNinetyFive = 1.731; // of a length that is spread evenly to all sides, by its root mean square
+    if (result.projector.size.empty()) return std::nullopt; // without it the errors are a camera's
+    double sum = 0.0;
+    int count = 0;
+    for (std::size_t i = 0; i < result.views.size() && i < result.state.cameraFromBoard.size(); ++i) {
+        const PoseVector& pose = result.state.cameraFromBoard[i];
+        if (!result.views[i].heldOut || !isKnown(pose)) continue;
+        const double distance = std::hypot(pose[3], pose[4], pose[5]);
+        const double length = *result.views[i].heldOut * distance / result.projector.lens[kFocalLength];
+        sum += length * length;
+        ++count;
+    }
+    if (count == 0) return std::nullopt;
+    return kNinetyFive * std::sqrt(sum / count);
 }
 
 Installation withCrosshairs(Installation installation, const CrosshairCalibration& result, std::size_t points,

@@ -43,6 +43,20 @@ struct RoomPlacement {
 [[nodiscard]] Installation withCalibration(Installation installation, const ProcamCalibration& result,
                                            const CalibrationBoard& board, const RoomPlacement& placement = {});
 
+/// The installation with what a file says (its lengths as `placement` says): as `withCalibration` where it has poses of
+/// a board. Else nothing says where its camera stood, and lenses alone are taken over; a camera that the room lacks is
+/// added where the projector stands. Throws as `withCalibration`.
+[[nodiscard]] Installation withImport(Installation installation, const ProcamCalibration& result,
+                                      const CalibrationBoard& board, const RoomPlacement& placement = {});
+
+/// Whether a room has lenses and poses as `made` has them, of this projector, or where `made` has none of the camera.
+[[nodiscard]] bool hasSameFigures(const Installation& room, const Installation& made, bool ofProjector,
+                                  std::size_t index);
+
+/// 95 % of light lands within this on the boards, millimetres, by views that were held out; lengths in millimetres.
+/// Nothing without such views.
+[[nodiscard]] std::optional<double> heldOutMillimetresOf(const ProcamCalibration& result);
+
 /// The installation with a projector as crosshairs on points of the device (device frame) tell it: lens and pose, the
 /// device lying where the installation has it; all else as it was. `points` is how many were aimed at, for the origin;
 /// `date` as in RoomPlacement. Throws InvalidInput as above.

@@ -1,8 +1,9 @@
 #include "calibration/report/calibration_file.h"
 
-#include <algorithm>
-#include <cctype>
 #include <span>
+#include <string>
+#include <string_view>
+#include <vector>
 
 #include "core/base/atomic_file.h"
 #include "core/base/error.h"
@@ -15,30 +16,38 @@ namespace {
 
 constexpr std::size_t kMostFileBytes = std::size_t{16} << 20;
 
-/// Throws InvalidInput for a file of neither kind.
-bool isYaml(const std::filesystem::path& file) {
-    std::string ending = file.extension().string();
-    std::ranges::transform(ending, ending.begin(), [](unsigned char c) { return std::tolower(c); });
-    if (ending == ".yaml" || ending == ".yml") return true;
-    if (ending == ".json") return false;
-    throw InvalidInput("calibration file " + inQuotes(file.filename().string()), "is neither .json nor .yaml",
-                       "name it so: .json is Lumorph's own, .yaml OpenCV's");
-}
+std::string endingOf(const std::filesystem::path& file) { return lowerCase(file.extension().string()); }
+
+bool isYaml(const std::string& ending) { return ending == ".yaml" || ending == ".yml"; }
 
 } // namespace
 
-void requireCalibrationName(const std::filesystem::path& file) { (void)isYaml(file); }
+void requireCalibrationName(const std::filesystem::path& file) {
+    const std::string ending = endingOf(file);
+    if (!isYaml(ending) && ending != ".json")
+        throw InvalidInput("calibration file " + inQuotes(file.filename().string()), "is neither .json nor .yaml",
+                           "name it so: .json is Lumorph's own, .yaml OpenCV's");
+}
 
 void writeCalibration(const CalibrationRecord& record, const std::filesystem::path& file) {
-    const std::string text = isYaml(file) ? calibrationYaml(record) : calibrationText(record);
+    requireCalibrationName(file);
+    const std::string text = isYaml(endingOf(file)) ? calibrationYaml(record) : calibrationText(record);
     writeFileAtomically(file, std::as_bytes(std::span(text)));
 }
 
 CalibrationRecord readCalibration(const std::filesystem::path& file, const KnownSizes& sizes) {
-    const bool yaml = isYaml(file);
+    const std::string ending = endingOf(file);
+    if (!isYaml(ending) && ending != ".json" && ending != ".xml" && ending != ".txt")
+        throw InvalidInput("calibration file " + inQuotes(file.filename().string()),
+                           "is none of .json, .yaml, .yml, .xml and .txt", "choose another file, or name it so");
     const std::vector<std::byte> bytes = readFile(file, kMostFileBytes);
     const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
-    return yaml ? parseCalibrationYaml(text, file.string(), sizes) : parseCalibration(text, file.string());
+    // Ours says so; other programs write JSON too, and some put XML into a file of that name.
+    const bool isObject = text.find('{') != std::string_view::npos && text.find('{') < text.find('<');
+    const bool isForeign =
+        text.find("\"lumorph\"") == std::string_view::npos && (isObject || text.find('<') != std::string_view::npos);
+    const bool isOurs = ending == ".json" && !isForeign;
+    return isOurs ? parseCalibration(text, file.string()) : parseForeignCalibration(text, file.string(), sizes);
 }
 
 } // namespace lumorph

@@ -3,11 +3,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdio>
 #include <limits>
 
 #include <nlohmann/json.hpp>
 #include <opencv2/calib3d.hpp>
 
+#include "calibration/decode/calibration_board.h"
 #include "core/base/error.h"
 #include "core/base/json_check.h"
 #include "core/scene/json_section.h"
@@ -36,6 +38,10 @@ json listOf(const Lens& lens) {
     return list;
 }
 
+template <typename Figures> bool isAnySaid(const Figures& figures) {
+    return std::ranges::any_of(figures, [](double figure) { return figure != 0.0; });
+}
+
 json jsonOf(const CalibratedDevice& device) {
     const Lens& lens = device.lens;
     const double fy = lens[kFocalLength] * lens[kAspect];
@@ -43,12 +49,15 @@ json jsonOf(const CalibratedDevice& device) {
     const double fySigma =
         std::hypot(device.sigma[kFocalLength] * lens[kAspect], lens[kFocalLength] * device.sigma[kAspect]);
     for (std::size_t i = 0; i < kSigmaKeys.size(); ++i) sigma[kSigmaKeys[i]] = i == kAspect ? fySigma : device.sigma[i];
-    return {{"K", {{lens[kFocalLength], 0.0, lens[kPrincipalX]}, {0.0, fy, lens[kPrincipalY]}, {0.0, 0.0, 1.0}}},
-            {"distortion", listOf(lens)},
-            {"size", {device.size.width, device.size.height}},
-            {"rms", device.rms},
-            {"model", device.model},
-            {"sigma", sigma}};
+    json document = {
+        {"K", {{lens[kFocalLength], 0.0, lens[kPrincipalX]}, {0.0, fy, lens[kPrincipalY]}, {0.0, 0.0, 1.0}}},
+        {"distortion", listOf(lens)},
+        {"model", device.model}};
+    // What nobody said is left out, so that whoever reads it takes no 0 for exact.
+    if (!device.size.empty()) document["size"] = {device.size.width, device.size.height};
+    if (device.rms != 0.0) document["rms"] = device.rms;
+    if (isAnySaid(device.sigma)) document["sigma"] = sigma;
+    return document;
 }
 
 json rotationJson(const PoseVector& pose) {
@@ -120,7 +129,7 @@ bool readNumbers(JsonSection& section, const std::string& key, std::array<double
     return true;
 }
 
-void readDevice(json& object, JsonSection section, CalibratedDevice& device) {
+void readDevice(json& object, JsonSection section, CalibratedDevice& device, bool mayLackSize = false) {
     const cv::Matx33d matrix = matrixIn(section, object, "K");
     if (const std::string problem = setIntrinsics(device, matrix); !problem.empty())
         section.refuse("K", problem, "write it as OpenCV does, in pixels");
@@ -129,9 +138,10 @@ void readDevice(json& object, JsonSection section, CalibratedDevice& device) {
     if (const std::string problem = setDistortion(device, terms); !problem.empty())
         section.refuse("distortion", problem, "calibrate with k1, k2, p1, p2, k3 alone");
     std::array<double, 2> size{};
-    if (!readNumbers(section, "size", size)) section.refuse("size", "is missing", "write [width, height] in pixels");
+    const bool hasSize = readNumbers(section, "size", size);
+    if (!hasSize && !mayLackSize) section.refuse("size", "is missing", "write [width, height] in pixels");
     for (const double side : size)
-        if (!(side >= 1.0 && side <= kLargestPixels && side == std::floor(side)))
+        if (hasSize && !(side >= 1.0 && side <= kLargestPixels && side == std::floor(side)))
             section.refuse("size", "is no width and height in pixels", "write [width, height]");
     device.size = {static_cast<int>(size[0]), static_cast<int>(size[1])};
     section.number("rms", device.rms, 0.0, kLargest);
@@ -249,6 +259,66 @@ std::string setRig(ProcamCalibration& result, const cv::Matx33d& rotation, const
     return {};
 }
 
+CalibrationRecord inMillimetres(CalibrationRecord record) {
+    constexpr double kMetresPerMillimetre = 0.001;
+    const double unit = record.source.metresPerUnit;
+    if (!(unit > 1e-9 && unit < 1e6))
+        throw InvalidInput("unit of the calibration", "is no length", "write metresPerUnit, 0.001 for millimetres");
+    const double scale = unit / kMetresPerMillimetre;
+    record.source.metresPerUnit = kMetresPerMillimetre;
+    if (scale == 1.0) return record;
+    ProcamCalibration& result = record.result;
+    const auto scaleShift = [scale](PoseVector& pose) {
+        for (std::size_t i = 3; i < pose.size(); ++i) pose[i] *= scale;
+    };
+    scaleShift(result.projectorFromCamera);
+    scaleShift(result.projectorFromCameraSigma);
+    scaleShift(result.state.projectorFromCamera);
+    for (PoseVector& pose : result.state.cameraFromBoard) scaleShift(pose);
+    result.boardBend *= scale;
+    try {
+        CalibrationBoard board = parseCalibrationBoard(record.source.board);
+        board.spacing *= scale;
+        board.marker *= scale;
+        record.source.board = boardText(board);
+    } catch (const InvalidInput&) { // of another program, which names boards in its own way, or of none
+    }
+    return record;
+}
+
+void addSizeDoubts(ProcamCalibration& result, const std::string& file) {
+    const auto add = [&](const CalibratedDevice& device, Cause cause, const char* what, const std::string& remedy) {
+        std::array<char, 200> why{};
+        std::snprintf(why.data(), why.size(),
+                      "the %s's matrix has its centre at column %.1f, row %.1f, but its pictures are said to be "
+                      "%d x %d pixels",
+                      what, device.lens[kPrincipalX], device.lens[kPrincipalY], device.size.width, device.size.height);
+        const auto isSame = [&](const Finding& one) { return one.cause == cause && one.why == why.data(); };
+        if (std::ranges::none_of(result.warnings, isSame))
+            result.warnings.push_back({cause, "", file, why.data(), remedy});
+    };
+    constexpr double kFarOut = 0.3;   // of a side, from the middle: no camera's lens sits so far aside
+    constexpr double kScaled = 0.125; // likewise, on both axes alike: a size that was scaled
+    const auto asideOf = [](const CalibratedDevice& device) {
+        return cv::Point2d((device.lens[kPrincipalX] + 0.5) / device.size.width - 0.5,
+                           (device.lens[kPrincipalY] + 0.5) / device.size.height - 0.5);
+    };
+    if (const CalibratedDevice& camera = result.camera; !camera.size.empty()) {
+        const cv::Point2d aside = asideOf(camera);
+        const bool isFar = std::abs(aside.x) > kFarOut || std::abs(aside.y) > kFarOut;
+        const bool isScaled = aside.x * aside.y > 0.0 && std::min(std::abs(aside.x), std::abs(aside.y)) > kScaled &&
+                              std::abs(aside.x - aside.y) < 0.2 * std::abs(aside.x + aside.y);
+        if (isFar || isScaled)
+            add(camera, Cause::imageSize, "camera",
+                "give the size of the pictures that it was calibrated with, or calibrate at this one");
+    }
+    // A projector's lens shift puts its centre above or below the picture, seldom beside it.
+    if (const CalibratedDevice& projector = result.projector;
+        !projector.size.empty() && std::abs(asideOf(projector).x) > 0.5)
+        add(projector, Cause::projectorSize, "projector",
+            "give the size of the picture that was projected; ignore this where the lens is shifted sideways");
+}
+
 std::string calibrationText(const CalibrationRecord& record) {
     const ProcamCalibration& result = record.result;
     const CalibrationSource& source = record.source;
@@ -269,7 +339,6 @@ std::string calibrationText(const CalibrationRecord& record) {
                      {"inputs", source.inputs},
                      {"metresPerUnit", source.metresPerUnit},
                      {"camera", jsonOf(result.camera)},
-                     {"rms", result.rms},
                      {"views", views},
                      {"worstView", result.worstView},
                      {"halvesDiffer", orNull(result.halvesDiffer)},
@@ -277,14 +346,16 @@ std::string calibrationText(const CalibrationRecord& record) {
                      {"warnings", warnings},
                      {"degenerate", result.degenerate}};
     if (source.isSimulated) document["simulated"] = true;
+    if (result.rms != 0.0) document["rms"] = result.rms;
     if (!result.projector.size.empty()) {
         const PoseVector& rig = result.projectorFromCamera;
         const PoseVector& sigma = result.projectorFromCameraSigma;
         document["projector"] = jsonOf(result.projector);
         document["R"] = rotationJson(rig);
         document["T"] = {rig[3], rig[4], rig[5]};
-        document["sigma"] = {{"rotationDegrees", {kDegrees * sigma[0], kDegrees * sigma[1], kDegrees * sigma[2]}},
-                             {"T", {sigma[3], sigma[4], sigma[5]}}};
+        if (isAnySaid(sigma))
+            document["sigma"] = {{"rotationDegrees", {kDegrees * sigma[0], kDegrees * sigma[1], kDegrees * sigma[2]}},
+                                 {"T", {sigma[3], sigma[4], sigma[5]}}};
     }
     if (!allFinite(document)) throw InvalidInput("calibration", "holds a number that is not finite", "calibrate again");
     try {
@@ -314,8 +385,9 @@ CalibrationRecord parseCalibration(std::string_view text, const std::string& nam
     CalibrationRecord record;
     ProcamCalibration& result = record.result;
     readSource(document, root, record.source);
-    requiredSection(root, document, "camera",
-                    [&](json& object, const JsonSection& section) { readDevice(object, section, result.camera); });
+    requiredSection(root, document, "camera", [&](json& object, const JsonSection& section) {
+        readDevice(object, section, result.camera, document.contains("projector"));
+    });
     if (root.has("projector")) {
         requiredSection(root, document, "projector", [&](json& object, const JsonSection& section) {
             readDevice(object, section, result.projector);
@@ -334,6 +406,7 @@ CalibrationRecord parseCalibration(std::string_view text, const std::string& nam
     result.state.camera = result.camera.lens;
     result.state.projector = result.projector.lens;
     result.state.projectorFromCamera = result.projectorFromCamera;
+    addSizeDoubts(result, name);
     return record;
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -30,9 +31,22 @@ inline constexpr int kCalibrationSchema = 1;
 
 /// Our JSON, as resources/guide/formats.md describes it. Throws InvalidInput for numbers that are not finite.
 [[nodiscard]] std::string calibrationText(const CalibrationRecord& record);
-/// Reads it back; what other programs leave out (figures of quality, views) stays empty. `name` stands in errors.
-/// Throws DataError naming the key and the remedy.
+/// Reads it back; what other programs leave out (figures of quality, views, beside a projector the camera's size) stays
+/// empty, and what is odd becomes a warning of the result. `name` stands in errors. Throws DataError naming the key and
+/// the remedy.
 [[nodiscard]] CalibrationRecord parseCalibration(std::string_view text, const std::string& name);
+
+/// The same with the lengths of its board in millimetres, and those of T, of the poses and their errors with them.
+/// Throws InvalidInput for a unit that is none.
+[[nodiscard]] CalibrationRecord inMillimetres(CalibrationRecord record);
+
+/// A reprojection error or a standard deviation as a calibration has it, where 0 is: not said, or not solved for.
+[[nodiscard]] inline std::optional<double> whereSaid(double figure) {
+    return figure > 0.0 ? std::optional(figure) : std::nullopt;
+}
+
+/// Adds a warning where a matrix was made for pictures of another size than is said: `file` stands in it.
+void addSizeDoubts(ProcamCalibration& result, const std::string& file);
 
 // Parts of a calibration from OpenCV's matrices, for readers. Each returns what is wrong, as the end of a sentence
 // about the matrix; empty when nothing is.

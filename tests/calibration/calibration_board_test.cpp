@@ -1,11 +1,13 @@
 #include "calibration/decode/calibration_board.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <opencv2/imgproc.hpp>
 
+#include "calibration/lab/board_texture.h"
 #include "calibration/tracking/board_finder.h"
 #include "core/base/error.h"
 
@@ -21,6 +23,11 @@ TEST(CalibrationBoard, IsReadFromItsName) {
               (CalibrationBoard{CalibrationBoard::Kind::circles, 4, 11, 20.5, 0.0}));
     EXPECT_EQ(parseCalibrationBoard("charuco:5x7:30:22"),
               (CalibrationBoard{CalibrationBoard::Kind::charuco, 5, 7, 30.0, 22.0}));
+    for (const char* name : {"6X6_250", "6x6_250", "DICT_6X6_250"})
+        EXPECT_EQ(parseCalibrationBoard(std::string("charuco:5x7:30:22:") + name).dictionary, "6X6_250") << name;
+    for (const char* text : {"chess:9x7:75", "circles:4x11:20.5", "charuco:5x7:30:22", "charuco:5x7:30:22:6X6_250",
+                             "charuco:6x8:0.03:0.022:APRILTAG_36h11:old", "charuco:6x8:30:22:old"})
+        EXPECT_EQ(boardText(parseCalibrationBoard(text)), text);
 }
 
 TEST(CalibrationBoard, WrongNamesAreRefusedWithTheirReason) {
@@ -38,6 +45,11 @@ TEST(CalibrationBoard, WrongNamesAreRefusedWithTheirReason) {
         {"chess:9x7:75mm", "no length"},
         {"charuco:5x7:30:31", "smaller than its square"},
         {"charuco:20x20:30:22", "more markers"},
+        {"charuco:20x20:30:22:5X5_100", "more markers than the 100 of 5X5_100"},
+        {"charuco:5x7:30:22:9X9_50", "'9X9_50' is no dictionary"},
+        {"charuco:5x7:30:22:6X6_250:4X4_50", "'4X4_50' is no dictionary"},
+        {"charuco:5x7:30:22:4X4_50:old:old", "not four parts"},
+        {"chess:9x7:75:old", "not three parts"},
     };
     for (const auto& [text, why] : wrong) {
         try {
@@ -125,6 +137,115 @@ TEST(CalibrationBoard, CharucoCornersAreFoundThoughPartIsHidden) {
     };
     const auto down = [](const cv::Point3d& p) { return cv::Point2d(89.5 + 2.4 * p.x, 19.5 + 2.4 * p.y); };
     EXPECT_LT(std::min(errorOf(*found, truth, up), errorOf(*found, truth, down)), 0.2);
+}
+
+/// A board as it is printed, 2 pixels a unit, and where it begins on the page.
+struct Printed {
+    cv::Mat page;
+    cv::Point2d first;
+    [[nodiscard]] cv::Point2d at(const cv::Point3d& p) const { return {first.x + 2 * p.x, first.y + 2 * p.y}; }
+};
+
+Printed printed(const std::string& name, bool isWhiteOnBlack = false) {
+    const BoardTexture texture(parseCalibrationBoard(name));
+    constexpr int kFine = 4; // samples a pixel, along each side
+    Printed result{cv::Mat(560, 680, CV_8U), {120.0, 60.0}};
+    for (int y = 0; y < result.page.rows; ++y)
+        for (int x = 0; x < result.page.cols; ++x) {
+            double white = 0.0;
+            for (int i = 0; i < kFine * kFine; ++i)
+                white += texture.albedo(0.5 * (x - result.first.x + (i % kFine - 1.5) / kFine),
+                                        0.5 * (y - result.first.y + (i / kFine - 1.5) / kFine)); // NOLINT
+            const double grey = 255.0 * white / (kFine * kFine);
+            result.page.at<uchar>(y, x) = cv::saturate_cast<uchar>(isWhiteOnBlack ? 235.0 - grey : grey);
+        }
+    return result;
+}
+
+Warped seen(const Printed& board) { return warped(board.page); }
+
+TEST(CalibrationBoard, CharucoOfEachDictionaryAndLayoutIsFoundBySaidAndUnsaidName) {
+    struct Case {
+        const char* printedAs;
+        const char* said;
+        const char* family; ///< that is found
+        std::size_t corners;
+    };
+    for (const Case& one : {Case{"charuco:7x6:30:22:6X6_250", "charuco:7x6:30:22:6X6_250", "6X6", 30},
+                            Case{"charuco:7x6:30:22:6X6_50", "charuco:7x6:30:22", "6X6", 30},
+                            Case{"charuco:7x6:30:22:5X5_100", "charuco:7x6:30:22", "5X5", 30},
+                            Case{"charuco:7x6:30:22:APRILTAG_36h11", "charuco:7x6:30:22:6X6_250", "APRILTAG_36h11", 30},
+                            Case{"charuco:7x6:30:22:old", "charuco:7x6:30:22", "4X4", 30},
+                            Case{"charuco:6x6:30:22:old", "charuco:6x6:30:22", "4X4", 25},
+                            Case{"charuco:7x6:30:22", "charuco:7x6:30:22:old", "4X4", 30},
+                            Case{"charuco:7x6:30:22:7X7_1000:old", "charuco:7x6:30:22:7X7_250", "7X7", 30},
+                            Case{"charuco:4x3:50:35", "charuco:4x3:50:35", "4X4", 6}}) {
+        const Printed board = printed(one.printedAs);
+        const Warped truth = seen(board);
+        const CalibrationBoard said = parseCalibrationBoard(one.said);
+        const auto found = findBoard(truth.picture, said);
+        ASSERT_TRUE(found) << one.printedAs << " as " << one.said;
+        EXPECT_EQ(found->seen.size(), one.corners) << one.printedAs;
+        EXPECT_LT(errorOf(*found, truth, [&](const cv::Point3d& p) { return board.at(p); }), 0.1) << one.printedAs;
+        EXPECT_TRUE(found->dictionary.starts_with(one.family)) << found->dictionary;
+        const std::string saidFamily = said.dictionary.empty() ? "4X4" : said.dictionary.substr(0, 3);
+        const auto warning = checkBoardKind("pose", said, *found);
+        EXPECT_EQ(warning.has_value(), !std::string(one.family).starts_with(saidFamily)) << one.said;
+        if (!warning) continue;
+        EXPECT_EQ(warning->cause, Cause::boardKind);
+        EXPECT_THAT(warning->why, HasSubstr(one.family));
+        EXPECT_THAT(warning->remedy, HasSubstr("charuco:7x6:30:22:" + found->dictionary));
+    }
+}
+
+TEST(CalibrationBoard, WhiteOnBlackIsFoundAsBlackOnWhite) {
+    for (const char* name : {"charuco:7x6:30:22:5X5_250", "chess:8x6:25", "circles:4x9:20"}) {
+        const Printed board = printed(name, true);
+        const Warped truth = seen(board);
+        const CalibrationBoard said = parseCalibrationBoard(name);
+        const auto found = findBoard(truth.picture, said);
+        ASSERT_TRUE(found) << name;
+        const std::vector<cv::Point3d> all = pointsOf(said);
+        ASSERT_EQ(found->seen.size(), all.size()) << name;
+        const auto turned = [&](const cv::Point3d& p) {
+            return board.at({all.back().x + all.front().x - p.x, all.back().y + all.front().y - p.y, 0.0});
+        };
+        EXPECT_LT(std::min(errorOf(*found, truth, [&](const cv::Point3d& p) { return board.at(p); }),
+                           errorOf(*found, truth, turned)),
+                  0.2)
+            << name;
+    }
+}
+
+TEST(CalibrationBoard, CornersOfABoardThatLeavesThePictureAreFoundWhereTheyAreInSight) {
+    const Printed board = printed("charuco:7x6:30:22");
+    const Warped truth = seen(board);
+    const CalibrationBoard said = parseCalibrationBoard("charuco:7x6:30:22");
+    // A hand over the middle, as bright as paper on one side and as ink on the other.
+    cv::Mat covered = truth.picture.clone();
+    const cv::Point middle = truth.at(board.at({105.0, 90.0, 0.0}));
+    cv::ellipse(covered, middle, {55, 40}, 30.0, 0.0, 360.0, cv::Scalar(120), cv::FILLED);
+    const auto around = findBoard(covered, said);
+    ASSERT_TRUE(around);
+    EXPECT_GE(around->seen.size(), 15U);
+    EXPECT_LT(around->seen.size(), 30U);
+    EXPECT_LT(errorOf(*around, truth, [&](const cv::Point3d& p) { return board.at(p); }), 0.15);
+    // Parts of the board to the left of an edge of the picture.
+    for (const double cut : {135.0, 105.0, 75.0}) {
+        const int width = static_cast<int>(truth.at(board.at({cut, 90.0, 0.0})).x);
+        const auto part = findBoard(truth.picture(cv::Rect(0, 0, width, truth.picture.rows)).clone(), said);
+        ASSERT_TRUE(part) << cut;
+        const std::vector<cv::Point3d> all = pointsOf(said);
+        const auto inside =
+            std::ranges::count_if(all, [&](const cv::Point3d& p) { return truth.at(board.at(p)).x < width; });
+        EXPECT_LE(static_cast<std::ptrdiff_t>(part->seen.size()), inside) << cut;
+        EXPECT_GE(static_cast<std::ptrdiff_t>(part->seen.size()), inside - 5) << cut << ": the last column may be cut";
+        EXPECT_LT(errorOf(*part, truth, [&](const cv::Point3d& p) { return board.at(p); }), 0.15) << cut;
+    }
+    // A single column of corners tells no pose.
+    const int narrow = static_cast<int>(truth.at(board.at({50.0, 90.0, 0.0})).x);
+    EXPECT_FALSE(findBoard(truth.picture(cv::Rect(0, 0, narrow, truth.picture.rows)).clone(), said));
+    EXPECT_FALSE(findBoard(truth.picture, parseCalibrationBoard("charuco:9x5:30:22"))) << "another board";
 }
 
 } // namespace

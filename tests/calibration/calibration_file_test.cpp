@@ -368,7 +368,9 @@ TEST(CalibrationFile, IsWrittenWholeByItsEnding) {
         expectSameFigures(record.result, readCalibration(folder / name).result);
     }
     EXPECT_THROW(writeCalibration(record, folder / "d.txt"), InvalidInput);
-    EXPECT_THROW((void)readCalibration(folder / "d.xml"), InvalidInput);
+    EXPECT_THROW(writeCalibration(record, folder / "d.xml"), InvalidInput);
+    EXPECT_THROW((void)readCalibration(folder / "d.pdf"), InvalidInput);
+    EXPECT_THROW((void)readCalibration(folder / "d.xml"), Error);
     EXPECT_THROW((void)readCalibration(folder / "absent.json"), DataError);
     EXPECT_THROW(writeCalibration(record, folder / "no/such/a.json"), DeviceError);
     CalibrationRecord broken = record;

@@ -222,5 +222,83 @@ TEST_F(Calibrate, AFolderWithAFaultIsRefusedByCausePlaceAndRemedy) {
     EXPECT_EQ(patterns->itemText(2), "From an order file...");
 }
 
+/// As SLStudio writes it, and beside it a camera alone.
+constexpr auto kSlStudio = R"(<?xml version="1.0"?>
+<opencv_storage>
+<Kc type_id="opencv-matrix"><rows>3</rows><cols>3</cols><dt>d</dt>
+<data>1180.5 0. 642.25 0. 1181. 478.75 0. 0. 1.</data></Kc>
+<kc type_id="opencv-matrix"><rows>1</rows><cols>5</cols><dt>d</dt><data>-0.31 0.12 0. 0. 0.</data></kc>
+<Kp type_id="opencv-matrix"><rows>3</rows><cols>3</cols><dt>d</dt>
+<data>1700. 0. 330. 0. 1700. 300. 0. 0. 1.</data></Kp>
+<Rp type_id="opencv-matrix"><rows>3</rows><cols>3</cols><dt>d</dt><data>1. 0. 0. 0. 1. 0. 0. 0. 1.</data></Rp>
+<Tp type_id="opencv-matrix"><rows>3</rows><cols>1</cols><dt>d</dt><data>-210. 12. 35.</data></Tp>
+<frameWidth>1280</frameWidth><frameHeight>960</frameHeight>
+</opencv_storage>
+)";
+constexpr auto kCameraAlone = "image_width: 1280\nimage_height: 960\ndistortion_model: plumb_bob\n"
+                              "camera_matrix: [[1180.5, 0, 642.25], [0, 1181, 478.75], [0, 0, 1]]\n"
+                              "distortion_coefficients: [-0.31, 0.12, 0, 0, 0]\n";
+constexpr auto kFisheye = "image_width: 1280\nimage_height: 960\ndistortion_model: equidistant\n"
+                          "K: [1180.5, 0, 642.25, 0, 1181, 478.75, 0, 0, 1]\nD: [-0.01, 0.004, 0.002, -0.001]\n";
+
+TEST_F(Calibrate, ImportedFileEndsWithAButtonThatUsesItAndSaysNoMoreThanTheFile) {
+    Window& w = *window;
+    const auto importText = [&](const char* name, const char* text) {
+        std::ofstream(w.folder / name) << text;
+        w.studio.studio().commands.find("calibrate.import")->trigger();
+        answerFileDialog(w.studio, "calibrate.import.file", w.folder / name, "Open");
+    };
+    // Where one photographs in the lab it was the next pose that was offered.
+    w.studio.click("calibrate.way.lab");
+    const double before = w.projector().camera.focal.x;
+    const glm::dvec3 place = positionOf(w.projector().camera);
+    importText("calibration.xml", kSlStudio);
+    ASSERT_TRUE(w.offers("Use this calibration", 20s)) << w.story();
+    EXPECT_EQ(w.title(), "A calibration from a file");
+    EXPECT_EQ(w.step("camera"), "Good");
+    EXPECT_EQ(w.step("projector"), "Good");
+    EXPECT_EQ(w.studio.text("calibrate.headline"), "not known");
+    EXPECT_EQ(w.studio.text("calibrate.figure.projectorError"), "unknown");
+    EXPECT_EQ(w.studio.text("calibrate.figure.projectorFocal"), "1700.0 px") << "nobody said how sure it is";
+    EXPECT_EQ(w.studio.findNow<QWidget>("calibrate.residuals"), nullptr) << "no points, no arrows";
+    EXPECT_FALSE(w.studio.text("calibrate.step.projector.words").contains("±"));
+    w.studio.screenshot("calibrate-imported");
+    w.next();
+    ASSERT_TRUE(eventually([&] { return w.projector().camera.focal.x == 1700.0; }, 10s)) << w.story();
+    EXPECT_EQ(w.title(), "Calibrated, and in use");
+    EXPECT_EQ(w.projector().lens.method, "read from a file");
+    EXPECT_LT(glm::length(positionOf(w.projector().camera) - place), 1e-12) << "the file says nothing of the room";
+    // What the room has decides, not a date.
+    w.studio.studio().document.undoStack().undo();
+    EXPECT_TRUE(w.offers("Use this calibration", 10s)) << w.story();
+    EXPECT_EQ(w.projector().camera.focal.x, before);
+    importText("again.xml", kSlStudio);
+    w.studio.studio().document.undoStack().redo();
+    EXPECT_TRUE(eventually([&] { return w.title() == "Calibrated, and in use"; }, 10s)) << w.story();
+    w.studio.studio().document.undoStack().undo();
+
+    importText("fisheye.yaml", kFisheye);
+    ASSERT_TRUE(eventually([&] { return w.notices() == 1; }, 10s));
+    const studio::Notice notice = w.studio.studio().notices.at("calibrate").front();
+    EXPECT_TRUE(notice.subject.contains("fisheye.yaml, line 3")) << notice.subject.toStdString();
+    EXPECT_TRUE(notice.why.contains("equidistant")) << notice.why.toStdString();
+    EXPECT_EQ(w.title(), "A calibration from a file") << "the result before stays";
+
+    importText("camera.yaml", kCameraAlone);
+    ASSERT_TRUE(eventually([&] { return w.step("projector") == "Not begun"; }, 10s)) << w.story();
+    EXPECT_EQ(w.notices(), 0U) << "the error of the file before is gone";
+    EXPECT_EQ(w.studio.text("calibrate.step.projector.words"), "Not in this file");
+    EXPECT_EQ(w.studio.findNow<QLabel>("calibrate.figure.projectorFocal"), nullptr);
+    w.studio.screenshot("calibrate-imported-camera");
+    ASSERT_TRUE(w.offers("Use this calibration", 10s)) << w.story();
+    w.next();
+    ASSERT_TRUE(eventually([&] { return w.title() == "Calibrated, and in use"; }, 10s)) << w.story();
+    EXPECT_EQ(w.projector().camera.focal.x, before) << "a camera moves no projector";
+    EXPECT_EQ(w.studio.state().installation->cameras.front().camera.focal.x, 1180.5);
+    w.studio.studio().document.undoStack().undo();
+    w.studio.studio().commands.find("calibrate.anew")->trigger();
+    EXPECT_TRUE(w.offers("Photograph pose 1", 30s)) << w.story();
+}
+
 } // namespace
 } // namespace lumorph::test

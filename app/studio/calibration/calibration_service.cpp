@@ -11,6 +11,7 @@
 #include <variant>
 
 #include <QCoreApplication>
+#include <QDateTime>
 #include <QTimer>
 
 #include "app/studio/calibration/calibration_work.h"
@@ -188,6 +189,7 @@ void CalibrationService::forgetPoses() {
 void CalibrationService::clearResults() {
     state_.result = nullptr;
     state_.isImported = false;
+    state_.isResultInRoom = false;
     question_.withdraw();
     state_.askedBeside.clear();
     state_.refusal.reset();
@@ -416,7 +418,7 @@ void CalibrationService::look() {
 
 /// The pose that would help most, once enough is known to tell; the first poses follow a plan.
 std::optional<NextPose> CalibrationService::wanted() const {
-    if (!state_.result || state_.setup.way == CaptureWay::folder) return std::nullopt;
+    if (!state_.result || state_.isImported || state_.setup.way == CaptureWay::folder) return std::nullopt;
     return state_.result->next;
 }
 
@@ -647,6 +649,7 @@ void CalibrationService::setFlatPose(const std::string& pose) {
     if (pose == state_.flatPose) return;
     isFlatChosen_ = true;
     state_.flatPose = pose;
+    followDocument();
     emit changed();
     if (!state_.result) return;
     using Plan = std::optional<ErrorPlan>;
@@ -681,7 +684,7 @@ std::optional<BoardPoints> CalibrationService::flatPoints() const {
 }
 
 void CalibrationService::takeResult(CalibrationResult result) {
-    if (bench_ && bench_->truth()) {
+    if (bench_ && bench_->truth() && !state_.isImported) {
         try {
             RoomPlacement place = placement();
             place.date = result.date;
@@ -702,15 +705,10 @@ Installation CalibrationService::roomOfResult() const {
     if (!state_.result) throw InvalidInput("calibration", "there is no result", "photograph the board, or read a file");
     RoomPlacement place = placement();
     place.date = state_.result->date;
-    if (state_.isImported && tableViewsOf(state_.result->solved).empty()) {
-        // Nothing in the file says where its camera stood: the lenses alone are taken over.
-        Installation room = *document_.state().installation;
-        CalibratedCamera& lens = room.projectors.at(projector()).camera;
-        const glm::dmat4 pose = lens.cameraFromWorld;
-        lens = cameraOf(state_.result->solved.projector);
-        lens.cameraFromWorld = pose;
-        const Origin::Way way = state_.result->isSimulated ? Origin::Way::simulated : Origin::Way::measured;
-        room.projectors[projector()].lens = {way, "read from a file", state_.result->date};
+    if (state_.isImported) {
+        const Installation& before = *document_.state().installation;
+        Installation room = withImport(before, state_.result->solved, state_.result->setup.board, place);
+        if (state_.result->isSimulated) markSimulated(before, room);
         return room;
     }
     Installation room =
@@ -764,35 +762,48 @@ void CalibrationService::reportTo(const std::filesystem::path& file, std::vector
 
 void CalibrationService::importFrom(const std::filesystem::path& file) {
     cancel();
-    const glm::ivec2 installed = document_.state().installation->projectors.at(projector()).camera.size;
-    jobs_.run<CalibrationRecord>(
+    if (!importTrouble_.isEmpty()) notices_.dismiss(kPlace, importTrouble_);
+    importTrouble_.clear();
+    KnownSizes sizes;
+    const Installation& room = *document_.state().installation;
+    if (projector() < room.projectors.size()) {
+        const glm::ivec2 installed = room.projectors[projector()].camera.size;
+        sizes.projector = {installed.x, installed.y};
+    }
+    if (!room.cameras.empty()) sizes.camera = {room.cameras.front().camera.size.x, room.cameras.front().camera.size.y};
+    jobs_.runWith<CalibrationRecord>(
         "import", kPlace, tr("Reading a calibration"),
-        [file, installed](const Progress&) {
-            KnownSizes sizes;
-            sizes.projector = {installed.x, installed.y};
-            return readCalibration(file, sizes);
-        },
-        [this, file](CalibrationRecord record) {
-            forgetPoses();
-            clearResults();
-            CalibrationResult result;
-            result.setup = state_.setup;
-            try {
-                if (!record.source.board.empty()) result.setup.board = parseCalibrationBoard(record.source.board);
-            } catch (const Error&) { // of another program; the board then only names a scale
-            }
-            result.setup.way = CaptureWay::folder;
-            result.setup.folder = file;
-            result.isSimulated = record.source.isSimulated;
-            result.solved = std::move(record.result);
-            result.heldOutMillimetres = heldOutMillimetresOf(result.solved);
-            result.date = record.source.date.empty() ? utcDate() : record.source.date;
-            const std::vector<std::string> views = tableViewsOf(result.solved);
-            state_.flatPose = views.empty() ? std::string() : views.front();
-            state_.isImported = true;
-            takeResult(std::move(result));
-            emit changed();
+        [file, sizes](const Progress&) { return inMillimetres(readCalibration(file, sizes)); },
+        [this, file](CalibrationRecord record) { takeImport(file, std::move(record)); },
+        [this](const std::exception& error) {
+            const Notice notice = noticeOf(error);
+            importTrouble_ = notice.subject;
+            notices_.post(kPlace, notice);
         });
+}
+
+void CalibrationService::takeImport(const std::filesystem::path& file, CalibrationRecord record) {
+    forgetPoses();
+    clearResults();
+    CalibrationResult result;
+    result.setup = state_.setup;
+    try {
+        if (!record.source.board.empty()) result.setup.board = parseCalibrationBoard(record.source.board);
+    } catch (const Error&) { // of another program; the board then only names a scale
+    }
+    result.setup.way = CaptureWay::folder;
+    result.setup.folder = file;
+    result.isSimulated = record.source.isSimulated;
+    result.solved = std::move(record.result);
+    result.heldOutMillimetres = heldOutMillimetresOf(result.solved);
+    // Other programs write dates in their own way, or none.
+    const QDateTime when = QDateTime::fromString(QString::fromStdString(record.source.date), Qt::ISODate);
+    if (when.isValid()) result.date = record.source.date;
+    const std::vector<std::string> views = tableViewsOf(result.solved);
+    state_.flatPose = views.empty() ? std::string() : views.front();
+    state_.isImported = true;
+    takeResult(std::move(result));
+    emit changed();
 }
 
 void CalibrationService::use() {
@@ -814,18 +825,28 @@ void CalibrationService::use() {
     emit changed();
 }
 
+/// Whether the room has the figures of the result, whenever and by whom they were put there.
+bool CalibrationService::isInRoom() const {
+    if (!state_.result) return false;
+    try {
+        return hasSameFigures(*document_.state().installation, roomOfResult(),
+                              !state_.result->solved.projector.size.empty(),
+                              state_.result->solved.projector.size.empty() ? 0 : projector());
+    } catch (const Error&) { // told when it is to be used
+        return false;
+    }
+}
+
 /// Undo takes a calibration out of the room, redo puts it back.
 void CalibrationService::followDocument() {
     const auto& projectors = document_.state().installation->projectors;
-    std::string used, room;
+    std::string room;
     if (projector() < projectors.size() && projectors[projector()].lens.isCalibrated())
         room = projectors[projector()].lens.date;
     const bool isSimulated = !room.empty() && projectors[projector()].lens.way == Origin::Way::simulated;
-    if (projector() < projectors.size() && state_.result && projectors[projector()].lens.date == state_.result->date &&
-        projectors[projector()].pose.date == state_.result->date)
-        used = state_.result->date;
-    if (used == state_.usedDate && room == state_.roomDate && isSimulated == state_.isRoomSimulated) return;
-    state_.usedDate = used;
+    const bool used = isInRoom();
+    if (used == state_.isResultInRoom && room == state_.roomDate && isSimulated == state_.isRoomSimulated) return;
+    state_.isResultInRoom = used;
     state_.roomDate = room;
     state_.isRoomSimulated = isSimulated;
     emit changed();

@@ -82,7 +82,8 @@ public:
     void exportTo(const std::filesystem::path& file);
     /// Writes a report of result or refusal, with these pictures beside those of the poses: .html or .pdf.
     void reportTo(const std::filesystem::path& file, std::vector<ReportPicture> pictures);
-    /// Takes the result of another time or program in place of poses and result.
+    /// Takes the result of another time or program in place of poses and result. A notice says what went wrong; that of
+    /// an earlier file goes.
     void importFrom(const std::filesystem::path& file);
     /// What would stand in the room; throws InvalidInput where it cannot.
     [[nodiscard]] Installation roomOfResult() const;
@@ -110,6 +111,8 @@ private:
     void forgetPoses();
     void setTrouble(const std::exception& error);
     void followDocument();
+    void takeImport(const std::filesystem::path& file, CalibrationRecord record);
+    [[nodiscard]] bool isInRoom() const;
     void takeResult(CalibrationResult result);
     [[nodiscard]] RoomPlacement placement() const;
     [[nodiscard]] std::optional<BoardPoints> flatPoints() const;
@@ -127,6 +130,7 @@ private:
     std::shared_ptr<CaptureBench> bench_;
     std::shared_ptr<PoseStore> store_; ///< of the poses of this calibration
     QString saveTrouble_;              ///< subject of the notice about it
+    QString importTrouble_;            ///< subject of the notice about the file that was to be imported last
     std::shared_ptr<Mailbox> mailbox_; ///< of the work that runs
     JobSlots jobs_;
     QTimer* liveTimer_;

@@ -1,7 +1,5 @@
 #include "app/studio/calibration/calibration_setup.h"
 
-#include <sstream>
-
 #include <QObject>
 #include <QStandardPaths>
 
@@ -18,12 +16,6 @@ constexpr int kMostPoses = 30;
 QString keyOf(CaptureWay way, const char* what) {
     static constexpr const char* kNames[] = {"lab", "folder", "camera", "crosshairs"};
     return QString("calibrate/%1/%2").arg(kNames[static_cast<int>(way)], what);
-}
-
-std::string textOf(double number) {
-    std::ostringstream text;
-    text << number;
-    return text.str();
 }
 
 QString sideText(double millimetres) { return QString::number(millimetres, 'g', 6); }
@@ -84,19 +76,6 @@ CaptureOrder orderOf(const CalibrationSetup& setup) {
                                : readCaptureOrder(setup.order, setup.projector);
 }
 
-std::string boardText(const CalibrationBoard& board) {
-    const std::string size = std::to_string(board.columns) + "x" + std::to_string(board.rows);
-    switch (board.kind) {
-    case CalibrationBoard::Kind::circles:
-        return "circles:" + size + ":" + textOf(board.spacing);
-    case CalibrationBoard::Kind::charuco:
-        return "charuco:" + size + ":" + textOf(board.spacing) + ":" + textOf(board.marker);
-    case CalibrationBoard::Kind::chess:
-        break;
-    }
-    return "chess:" + size + ":" + textOf(board.spacing);
-}
-
 QString boardWords(const CalibrationBoard& board) {
     switch (board.kind) {
     case CalibrationBoard::Kind::circles:
@@ -105,10 +84,12 @@ QString boardWords(const CalibrationBoard& board) {
             .arg(board.rows)
             .arg(sideText(board.spacing));
     case CalibrationBoard::Kind::charuco:
-        return QObject::tr("ChArUco board, %1 × %2 squares of %3 mm")
+        return QObject::tr("ChArUco board, %1 × %2 squares of %3 mm%4")
             .arg(board.columns)
             .arg(board.rows)
-            .arg(sideText(board.spacing));
+            .arg(sideText(board.spacing))
+            .arg(board.dictionary.empty() ? QString()
+                                          : QObject::tr(", markers %1").arg(QString::fromStdString(board.dictionary)));
     case CalibrationBoard::Kind::chess:
         break;
     }

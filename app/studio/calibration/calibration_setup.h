@@ -54,8 +54,6 @@ void keepSetup(Settings& settings, const CalibrationSetup& setup);
 
 /// What the images of a pose show. Throws InvalidInput; DataError where the order file cannot be used.
 [[nodiscard]] CaptureOrder orderOf(const CalibrationSetup& setup);
-/// "chess:9x7:25", as `parseCalibrationBoard` reads it.
-[[nodiscard]] std::string boardText(const CalibrationBoard& board);
 /// "Chessboard, 9 × 7 inner corners, squares of 25 mm".
 [[nodiscard]] QString boardWords(const CalibrationBoard& board);
 /// Why it cannot be used; empty where it can.

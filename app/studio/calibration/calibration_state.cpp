@@ -8,6 +8,7 @@
 #include <QObject>
 
 #include "app/studio/calibration/simulated_question.h"
+#include "calibration/report/calibrated_room.h"
 
 namespace lumorph::studio {
 namespace {
@@ -57,6 +58,7 @@ bool isOfSetup(const Finding& finding) {
 }
 
 CalibrationStep setupStep(const CalibrationState& state) {
+    if (state.isImported && state.result) return {"setup", tr("Set up"), How::good, wayWords(state.result->setup)};
     CalibrationStep step{"setup", tr("Set up"), How::good, wayWords(state.setup)};
     if (const QString problem = problemOf(state.setup); !problem.isEmpty())
         step.how = How::needsYou, step.words = problem;
@@ -76,6 +78,11 @@ const CalibrationPose* refusedPose(const CalibrationState& state) {
 CalibrationStep posesStep(const CalibrationState& state) {
     CalibrationStep step{"poses", tr("Poses of the board"), How::notBegun, {}};
     const int counting = state.counting();
+    if (state.isImported && state.result) {
+        const auto views = state.result->solved.views.size();
+        step.words = views == 0 ? tr("None in the file") : tr("%1, of which the file has figures alone").arg(views);
+        return step;
+    }
     const bool works = state.work == CalibrationState::Work::reading || state.work == CalibrationState::Work::capturing;
     const auto warned = std::ranges::count_if(
         state.poses, [](const CalibrationPose& pose) { return pose.counts() && !pose.warnings.empty(); });
@@ -104,9 +111,14 @@ CalibrationStep posesStep(const CalibrationState& state) {
 }
 
 QString lensWords(const CalibratedDevice& device) {
-    return tr("focal %1 ± %2 px, error %3 px")
-        .arg(number(device.lens[kFocalLength], 0), number(device.sigma[kFocalLength], 1), number(device.rms, 2));
+    const std::optional<double> sigma = whereSaid(device.sigma[kFocalLength]), error = whereSaid(device.rms);
+    return tr("focal %1%2 px, error %3")
+        .arg(number(device.lens[kFocalLength], 0), sigma ? " ± " + number(*sigma, 1) : QString(),
+             error ? number(*error, 2) + " px" : tr("unknown"));
 }
+
+/// Of a file with a camera alone, the projector.
+bool isEmpty(const CalibratedDevice& device) { return !(device.lens[kFocalLength] > 0.0); }
 
 CalibrationStep solvedStep(const CalibrationState& state, const QString& id, const QString& title,
                            CalibratedDevice ProcamCalibration::*device) {
@@ -117,6 +129,8 @@ CalibrationStep solvedStep(const CalibrationState& state, const QString& id, con
     } else if (state.refusal && state.counting() > 0) {
         step.how = How::refused;
         step.words = tr("No result that could be trusted");
+    } else if (state.result && isEmpty(state.result->solved.*device)) {
+        step.words = tr("Not in this file");
     } else if (state.result) {
         const auto doubts = doubtsOf(*state.result);
         step.how = doubts.empty() ? How::good : How::doubtful;
@@ -217,6 +231,17 @@ QString nextPoseWords(const CalibrationState& state) {
         .arg(number(100.0 * (1.0 - next->meanAfter / next->meanBefore), 0));
 }
 
+/// What of a calibration from a file would be used.
+QString importWords(const CalibrationResult& result) {
+    const bool hasPlace = !tableViewsOf(result.solved).empty();
+    QString words =
+        result.solved.projector.size.empty() ? tr("It has a camera alone.") : tr("It has a projector and a camera.");
+    words += ' ' + (hasPlace ? tr("Lenses and places are taken over; what the file does not say is unknown.")
+                             : tr("It has no pose of a board, so lenses alone are taken over; where the devices stand "
+                                  "stays as it is."));
+    return words;
+}
+
 NextStep solvedNext(const CalibrationState& state) {
     const CalibrationResult& result = *state.result;
     const auto doubts = doubtsOf(result);
@@ -228,7 +253,8 @@ NextStep solvedNext(const CalibrationState& state) {
                                : tr("How far it can be trusted needs more poses.");
     if (state.isUsed()) {
         next.title = tr("Calibrated, and in use");
-        next.text = within + ' ' + tr("Undo takes it back; in Versions it can be compared with those before.");
+        next.text = (state.isImported && !result.millimetres() ? QString() : within + ' ') +
+                    tr("Undo takes it back; in Versions it can be compared with those before.");
         return next;
     }
     next.what = Do::use;
@@ -242,9 +268,14 @@ NextStep solvedNext(const CalibrationState& state) {
         return next;
     }
     if (state.isImported) {
-        next.tone = Tone::quiet;
         next.title = tr("A calibration from a file");
-        next.text = tr("Its figures are told at the right, as far as the file has them.");
+        next.text = importWords(result);
+        if (doubts.empty()) {
+            next.tone = Tone::quiet;
+        } else {
+            const FindingWords words = wordsOf(doubts.front());
+            next.text = words.text + ' ' + words.remedy + ' ' + next.text;
+        }
         return next;
     }
     if (doubts.empty()) {
@@ -254,7 +285,8 @@ NextStep solvedNext(const CalibrationState& state) {
         const FindingWords words = wordsOf(doubts.front());
         next.title = words.title;
         next.text = words.text + ' ' + words.remedy;
-        if (state.setup.way != CaptureWay::folder && doubts.front().cause != Cause::clipped) {
+        const bool isHelpedByPose = doubts.front().cause != Cause::clipped && doubts.front().cause != Cause::boardKind;
+        if (state.setup.way != CaptureWay::folder && isHelpedByPose) {
             next.what = Do::photograph;
             next.button = tr("Photograph another pose");
         }
@@ -450,7 +482,8 @@ QString howWords(CalibrationStep::How how) {
 }
 
 NextStep nextOf(const CalibrationState& state) {
-    if (state.setup.way == CaptureWay::crosshairs) return {};
+    const bool showsImport = state.isImported && state.result;
+    if (state.setup.way == CaptureWay::crosshairs && !showsImport) return {};
     if (state.work != CalibrationState::Work::none) return workNext(state);
     if (!state.trouble.isEmpty())
         return {state.setup.way == CaptureWay::folder ? Do::chooseFolder : Do::photograph, Tone::failure,
@@ -458,6 +491,7 @@ NextStep nextOf(const CalibrationState& state) {
                 state.setup.way == CaptureWay::folder ? tr("Choose a folder") : tr("Try again")};
     if (state.refusal) return refusedNext(state, *state.refusal);
     if (const CalibrationPose* refused = refusedPose(state)) return refusedNext(state, *refused->refusal);
+    if (showsImport) return solvedNext(state);
     if (const QString problem = problemOf(state.setup); !problem.isEmpty())
         return {Do::nothing, Tone::warning, tr("Something in the set-up cannot be"), problem, {}};
     const bool isFolder = state.setup.way == CaptureWay::folder;
@@ -490,7 +524,9 @@ FindingWords wordsOf(const Finding& finding) {
                  (place.isEmpty() ? capitalised(finding.why) : QString::fromStdString(finding.why) + '.');
     // The command line's options have names of their own in the window.
     QString remedy = capitalised(finding.remedy);
-    remedy.replace("--board", tr("the board at the left"))
+    remedy.replace("nothing has to be done; --board", tr("nothing has to be done; the board"))
+        .replace("Nothing has to be done; --board", tr("Nothing has to be done; the board"))
+        .replace("--board", tr("the board at the left"))
         .replace("--projector", tr("the projector's size at the left"));
     remedy.replace(", or say so in an order file", "");
     words.remedy = remedy;
@@ -540,7 +576,10 @@ InstallationVersion versionOf(const CalibrationState& state, const Installation&
     const CalibrationResult& result = *state.result;
     InstallationVersion version;
     version.date = result.date;
-    version.title = "Projector and camera by structured light";
+    const bool hasProjector = !isEmpty(result.solved.projector);
+    version.title = !state.isImported ? "Projector and camera by structured light"
+                    : hasProjector    ? "Projector and camera from a file"
+                                      : "Camera from a file";
     const auto add = [&](const char* name, const std::optional<double>& value, const char* unit) {
         if (value) version.figures.push_back({name, *value, unit});
     };
@@ -550,11 +589,11 @@ InstallationVersion versionOf(const CalibrationState& state, const Installation&
     add("Light lands within", result.millimetres(), "mm");
     add("Truly beside", result.trueMillimetres, "mm");
     add("Held out, worst", heldOut, "px");
-    add("Camera error", result.solved.camera.rms, "px");
-    add("Projector error", result.solved.projector.rms, "px");
-    add("Projector focal", result.solved.projector.lens[kFocalLength], "px");
+    add("Camera error", whereSaid(result.solved.camera.rms), "px");
+    add("Projector error", whereSaid(result.solved.projector.rms), "px");
+    add("Projector focal", whereSaid(result.solved.projector.lens[kFocalLength]), "px");
     add("Camera focal", result.solved.camera.lens[kFocalLength], "px");
-    add("Poses", static_cast<double>(result.solved.views.size()), "");
+    add("Poses", whereSaid(static_cast<double>(result.solved.views.size())), "");
     version.inputs = {wayWords(result.setup).toStdString(), boardWords(result.setup.board).toStdString(),
                       patternOf(result.setup)};
     if (!state.savedIn.empty()) version.inputs.push_back("poses in " + state.savedIn.string());

@@ -79,12 +79,12 @@ struct CalibrationState {
     std::filesystem::path savedIn;        ///< folder of the images of the poses; empty while there are none
     int unsaved = 0;                      ///< poses whose images are only in memory
     std::vector<std::string> askedBeside; ///< what the room holds, while it asks (SimulatedQuestion); else empty
-    std::string usedDate;                 ///< of the result that the room uses, as far as it came from here
+    bool isResultInRoom = false;          ///< the room has the figures of the result
     std::string roomDate;                 ///< of the measurement that the room's projector has now; empty: none
     bool isRoomSimulated = false;         ///< that was the virtual lab's
     [[nodiscard]] int counting() const;
     [[nodiscard]] bool isSolved() const noexcept { return result != nullptr && !refusal; }
-    [[nodiscard]] bool isUsed() const { return result && usedDate == result->date; }
+    [[nodiscard]] bool isUsed() const noexcept { return result && isResultInRoom; }
 };
 
 /// One step of the sequence.

@@ -10,12 +10,7 @@
 namespace lumorph::studio {
 namespace {
 
-constexpr int kSearchWidth = 640;     // pixels; the live picture's board is found in a smaller one
-constexpr double kNinetyFive = 1.731; // of a length that is spread evenly to all sides, by its root mean square
-
-double distanceOf(const PoseVector& pose) {
-    return std::sqrt(pose[3] * pose[3] + pose[4] * pose[4] + pose[5] * pose[5]);
-}
+constexpr int kSearchWidth = 640; // pixels; the live picture's board is found in a smaller one
 
 } // namespace
 
@@ -62,20 +57,6 @@ cv::Mat pictureOfFinding(const std::vector<CapturedView>& views, const Finding& 
         }
     }
     return {};
-}
-
-std::optional<double> heldOutMillimetresOf(const ProcamCalibration& solved) {
-    double sum = 0.0;
-    int count = 0;
-    for (std::size_t i = 0; i < solved.views.size() && i < solved.state.cameraFromBoard.size(); ++i) {
-        if (!solved.views[i].heldOut) continue;
-        const double distance = distanceOf(solved.state.cameraFromBoard[i]);
-        const double length = *solved.views[i].heldOut * distance / solved.projector.lens[kFocalLength];
-        sum += length * length;
-        ++count;
-    }
-    if (count == 0) return std::nullopt;
-    return kNinetyFive * std::sqrt(sum / count);
 }
 
 std::optional<ErrorPlan> planOf(const ProcamCalibration& solved, const std::optional<BoardPoints>& flat,

@@ -25,10 +25,6 @@ namespace lumorph::studio {
 /// The image that a refusal is about, or one of its pose; empty where it cannot be read.
 [[nodiscard]] cv::Mat pictureOfFinding(const std::vector<CapturedView>& views, const Finding& finding);
 
-/// How far light that was held out lands beside, millimetres, in 95 of 100 places, on the boards; nothing where no
-/// pose was held out.
-[[nodiscard]] std::optional<double> heldOutMillimetresOf(const ProcamCalibration& solved);
-
 /// Nothing where it is not known in which pose the board lay on the table, or that cannot be.
 [[nodiscard]] std::optional<ErrorPlan> planOf(const ProcamCalibration& solved, const std::optional<BoardPoints>& flat,
                                               const CalibrationBoard& board, const Installation& room,

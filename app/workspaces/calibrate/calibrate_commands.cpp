@@ -61,8 +61,12 @@ void askToRead(const QString& name, const QString& title, const QString& filter,
 }
 
 void askImport(const CalibrateParts& parts) {
-    askToRead("calibrate.import.file", "Import a calibration", "Calibrations (*.json *.yaml *.yml)",
-              [parts](const std::filesystem::path& file) { parts.service.importFrom(file); });
+    askToRead("calibrate.import.file", "Import a calibration",
+              "Calibrations (*.json *.yaml *.yml *.xml *.txt *.JSON *.YAML *.YML *.XML)",
+              [parts](const std::filesystem::path& file) {
+                  parts.selection.setWhole(false); // where its figures and its button are
+                  parts.service.importFrom(file);
+              });
 }
 
 void doNextOfCalibration(const CalibrateParts& parts) {
@@ -204,7 +208,7 @@ void addCalibrateCommands(const CalibrateParts& parts) {
                                        "As JSON, or as YAML that OpenCV reads", [parts] { askExport(parts); });
     save->setIconText("Export...");
     addCalibrateAction(parts, "calibrate.import", "Import a calibration...", "open",
-                       "JSON of Lumorph, or YAML as users of OpenCV's stereoCalibrate write it",
+                       "Of Lumorph, or of other programs: OpenCV, ROS, Kalibr, SLStudio, procam-calibration",
                        [parts] { askImport(parts); })
         ->setIconText("Import...");
     QAction* report =
@@ -242,7 +246,7 @@ void addCalibrateCommands(const CalibrateParts& parts) {
         rest2->setEnabled(!chain.session.running() && chain.session.next().has_value());
         rest->setEnabled(state.setup.way == CaptureWay::lab && !works && state.counting() < state.setup.poses);
         another->setEnabled(offersAnother(state));
-        anew->setEnabled(!state.poses.empty() || state.refusal || !state.trouble.isEmpty());
+        anew->setEnabled(!state.poses.empty() || state.isImported || state.refusal || !state.trouble.isEmpty());
         use->setEnabled(state.isSolved() && !state.isUsed() && !works);
     };
     QObject::connect(&service, &CalibrationService::changed, next, follow);

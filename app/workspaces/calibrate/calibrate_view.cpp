@@ -210,11 +210,11 @@ private:
         if (!result) return;
         const auto found = std::ranges::find(result->residuals, pose, &PoseResiduals::name);
         if (found == result->residuals.end()) return;
-        double longest = 1e-6;
-        for (const Residual& one : found->camera) {
+        double longest = 0.0;
+        for (const Residual& one : found->camera) longest = std::max(longest, cv::norm(one.error));
+        if (!(longest > 0.0)) return legend_->setText("The errors of this pose are not known.");
+        for (const Residual& one : found->camera)
             marks.arrows.push_back({{one.at.x, one.at.y}, {one.error.x, one.error.y}});
-            longest = std::max(longest, cv::norm(one.error));
-        }
         marks.arrowScale = kArrowShare * result->solved.camera.size.width / longest;
         legend_->setText(QString("Arrows go from where a point was seen to where the solution has it, %1 times as "
                                  "long; the longest is %2 pixels.")

@@ -158,7 +158,8 @@ QWidget* CalibrateWorkspace::makeCentralView() {
     views->addWidget(makeCalibrateView(parts()));
     views->addWidget(makeCrosshairView(parts()));
     const auto follow = [this, views] {
-        views->setCurrentIndex(service_.state().setup.way == CaptureWay::crosshairs ? 1 : 0);
+        const CalibrationState& state = service_.state();
+        views->setCurrentIndex(state.setup.way == CaptureWay::crosshairs && !state.isImported ? 1 : 0);
     };
     connect(&service_, &CalibrationService::changed, views, follow);
     follow();

@@ -148,9 +148,14 @@ void ResidualField::paintEvent(QPaintEvent* /*event*/) {
     painter.setPen(colors.line);
     painter.setBrush(colors.sunken);
     painter.drawRect(area);
-    double longest = 1e-6;
+    double longest = 0.0;
     for (const auto& [name, all] : residuals_)
         for (const Residual& one : all) longest = std::max(longest, cv::norm(one.error));
+    if (!(longest > 0.0)) { // nothing to enlarge
+        painter.setPen(colors.textMuted);
+        painter.drawText(area, Qt::AlignCenter, "No errors are known");
+        return;
+    }
     const double scale = fitted.width() / image_.width();
     const double enlarged = kFieldArrow * image_.width() / longest;
     painter.setClipRect(area);

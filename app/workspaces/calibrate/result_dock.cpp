@@ -15,12 +15,19 @@
 #include "app/workspaces/calibrate/calibrate_docks.h"
 #include "app/workspaces/calibrate/finding_card.h"
 #include "app/workspaces/calibrate/residual_plots.h"
+#include "calibration/report/calibration_record.h"
 
 namespace lumorph::studio {
 namespace {
 
+/// Without the second number where it is not known.
 QString plusMinus(double value, double sigma, int decimals) {
+    if (!whereSaid(sigma)) return QString("%1 px").arg(value, 0, 'f', decimals);
     return QString("%1 ± %2 px").arg(value, 0, 'f', decimals).arg(sigma, 0, 'f', decimals + (sigma < 1.0 ? 1 : 0));
+}
+
+QString errorWords(double error) {
+    return whereSaid(error) ? QString("%1 px").arg(error, 0, 'f', 3) : QString("unknown");
 }
 
 class ResultDock : public QWidget {
@@ -122,15 +129,20 @@ private:
         part->addWidget(makeHeading("Errors by pose, pixels", this));
         bars_ = new PoseBars(this);
         part->addWidget(bars_);
-        part->addWidget(makeHeading("Errors over the image", this));
+        residualParts_ = new QWidget(plots_);
+        auto* over = new QVBoxLayout(residualParts_);
+        over->setContentsMargins(0, 0, 0, 0);
+        over->setSpacing(8);
+        over->addWidget(makeHeading("Errors over the image", this));
         device_ =
             new Segments({{"calibrate.residuals.camera", "Camera", "Points of the board in the camera's image"},
                           {"calibrate.residuals.projector", "Projector", "Decoded points in the projector's image"}},
                          this);
         device_->setChosen(0);
-        part->addWidget(device_);
+        over->addWidget(device_);
         field_ = new ResidualField(this);
-        part->addWidget(field_);
+        over->addWidget(field_);
+        part->addWidget(residualParts_);
         column.addWidget(plots_);
         connect(bars_, &PoseBars::chosen, this,
                 [this](const QString& pose) { parts_.selection.setPose(pose.toStdString()); });
@@ -174,7 +186,9 @@ private:
                 findings_->layout()->addWidget(makeFindingCard(wordsOf(finding), refusal, findings_));
         }
         figures_->setVisible(state.result != nullptr);
-        plots_->setVisible(state.result != nullptr);
+        // A file has no points to draw; of poses it may have figures.
+        plots_->setVisible(state.result && (!state.result->residuals.empty() || !state.result->solved.views.empty()));
+        residualParts_->setVisible(state.result && !state.result->residuals.empty());
         if (state.result) showFigures(*state.result);
         showPlots();
     }
@@ -182,9 +196,15 @@ private:
     void showFigures(const CalibrationResult& result) {
         const ProcamCalibration& solved = result.solved;
         const auto within = result.millimetres();
+        const bool isImported = parts_.service.state().isImported;
+        const bool hasProjector = !solved.projector.size.empty();
         headline_->setText(within ? QString("%1 mm").arg(*within, 0, 'f', 2) : "not known");
-        headlineWords_->setText(within ? "Light lands no farther beside where the device stands, in 95 of 100 cases."
-                                       : "With more poses the studio can tell how far light lands beside.");
+        headlineWords_->setText(!hasProjector ? "A camera alone casts no light; the file has no projector."
+                                : within && isImported
+                                    ? "Light lands no farther beside on the file's boards, in 95 of 100 cases."
+                                : within ? "Light lands no farther beside where the device stands, in 95 of 100 cases."
+                                : isImported ? "The file does not say how far light lands beside."
+                                             : "With more poses the studio can tell how far light lands beside.");
         const auto millimetres = [](const std::optional<double>& value) {
             return value && std::isfinite(*value) ? QString("%1 mm").arg(*value, 0, 'f', 2) : QString();
         };
@@ -199,19 +219,21 @@ private:
             solved.halvesDiffer && solved.halvesAllowed
                 ? QString("%1 of %2 px").arg(*solved.halvesDiffer, 0, 'f', 2).arg(*solved.halvesAllowed, 0, 'f', 2)
                 : QString());
-        set("cameraError", QString("%1 px").arg(solved.camera.rms, 0, 'f', 3));
-        set("projectorError", QString("%1 px").arg(solved.projector.rms, 0, 'f', 3));
+        set("cameraError", errorWords(solved.camera.rms));
+        set("projectorError", hasProjector ? errorWords(solved.projector.rms) : QString());
         const auto focal = [](const CalibratedDevice& device) {
             return plusMinus(device.lens[kFocalLength], device.sigma[kFocalLength], 1);
         };
-        set("projectorFocal", focal(solved.projector));
+        set("projectorFocal", hasProjector ? focal(solved.projector) : QString());
         set("cameraFocal", focal(solved.camera));
-        set("projectorCentre", QString("%1, %2 px")
-                                   .arg(solved.projector.lens[kPrincipalX], 0, 'f', 1)
-                                   .arg(solved.projector.lens[kPrincipalY], 0, 'f', 1));
-        set("lenses", QString::fromStdString(solved.camera.model + "; " + solved.projector.model));
+        set("projectorCentre", hasProjector ? QString("%1, %2 px")
+                                                  .arg(solved.projector.lens[kPrincipalX], 0, 'f', 1)
+                                                  .arg(solved.projector.lens[kPrincipalY], 0, 'f', 1)
+                                            : QString());
+        set("lenses",
+            QString::fromStdString(solved.camera.model + (hasProjector ? "; " + solved.projector.model : "")));
         const QDateTime date = QDateTime::fromString(QString::fromStdString(result.date), Qt::ISODate).toLocalTime();
-        set("date", QLocale().toString(date, QLocale::ShortFormat));
+        set("date", date.isValid() ? QLocale().toString(date, QLocale::ShortFormat) : QString("unknown"));
     }
 
     void showPlots() {
@@ -231,6 +253,7 @@ private:
     QWidget* findings_ = nullptr;
     QWidget* figures_ = nullptr;
     QWidget* plots_ = nullptr;
+    QWidget* residualParts_ = nullptr; ///< of them what needs points
     QLabel* headline_ = nullptr;
     QLabel* headlineWords_ = nullptr;
     std::vector<std::tuple<const char*, QLabel*, QLabel*>> values_;

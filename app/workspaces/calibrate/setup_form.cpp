@@ -1,5 +1,6 @@
 #include "app/workspaces/calibrate/setup_form.h"
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 
@@ -155,6 +156,8 @@ void SetupForm::addBoard(QVBoxLayout& column) {
             setup.board.kind = static_cast<CalibrationBoard::Kind>(kind);
             const bool markers = setup.board.kind == CalibrationBoard::Kind::charuco;
             setup.board.marker = markers ? 0.75 * setup.board.spacing : 0.0;
+            setup.board.dictionary.clear();
+            setup.board.isOldLayout = false;
         });
     });
     columns_ = addNumber("calibrate.board.columns", Quantity::level, 2, 50, 9);
@@ -171,6 +174,21 @@ void SetupForm::addBoard(QVBoxLayout& column) {
     marker_ = addNumber("calibrate.board.marker", Quantity::plain, 0.1, 2000.0, 20.0);
     markerRow_ = makeRow("Side of a marker, mm", marker_, this);
     column.addWidget(markerRow_);
+    dictionary_ = new QComboBox(this);
+    dictionary_->setObjectName("calibrate.board.dictionary");
+    dictionary_->setToolTip("Which markers the board has; the studio finds it out by itself, which takes longer");
+    dictionary_->setSizeAdjustPolicy(QComboBox::AdjustToMinimumContentsLengthWithIcon);
+    dictionary_->setMinimumContentsLength(8);
+    dictionary_->addItem("Found by itself", QString());
+    for (const std::string& name : markerDictionaries())
+        dictionary_->addItem(QString::fromStdString(name), QString::fromStdString(name));
+    dictionaryRow_ = makeRow("&Markers", dictionary_, this);
+    column.addWidget(dictionaryRow_);
+    connect(dictionary_, &QComboBox::activated, this, [this] {
+        edit([this](CalibrationSetup& setup) {
+            setup.board.dictionary = dictionary_->currentData().toString().toStdString();
+        });
+    });
     const auto whole = [](double value) { return static_cast<int>(std::lround(value)); };
     connect(columns_, &ValueField::committed, this, [this, whole](double value) {
         edit([&](CalibrationSetup& setup) { setup.board.columns = whole(value); });
@@ -303,7 +321,10 @@ void SetupForm::refresh() {
     rows_->setValue(setup.board.rows);
     spacing_->setValue(setup.board.spacing);
     marker_->setValue(setup.board.marker);
-    markerRow_->setVisible(setup.board.kind == CalibrationBoard::Kind::charuco);
+    const bool hasMarkers = setup.board.kind == CalibrationBoard::Kind::charuco;
+    markerRow_->setVisible(hasMarkers);
+    dictionaryRow_->setVisible(hasMarkers);
+    dictionary_->setCurrentIndex(std::max(0, dictionary_->findData(QString::fromStdString(setup.board.dictionary))));
     projectorRow_->setVisible(folder);
     width_->setValue(setup.projector.width);
     height_->setValue(setup.projector.height);

@@ -53,6 +53,8 @@ private:
     ValueField* marker_ = nullptr;
     QLabel* countName_ = nullptr;
     QWidget* markerRow_ = nullptr;
+    QComboBox* dictionary_ = nullptr; ///< of ChArUco
+    QWidget* dictionaryRow_ = nullptr;
     QLabel* spacingName_ = nullptr;
     QWidget* projectorRow_ = nullptr;
     ValueField* width_ = nullptr;
