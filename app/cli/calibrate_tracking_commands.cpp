@@ -182,9 +182,10 @@ void addCalibrateTracking(CLI::App& group, Session& session) {
         group.add_subcommand("handeye", "Two bodies that are joined, each tracked in its own world by its own clock");
     command->add_option("a", bodies->first, kPosesHelp)->required();
     command->add_option("b", bodies->second, "The same of the other body")->required();
-    command->add_flag("--stations", bodies->stations,
-                      "Poses at which both stood still, a row of each file for each: x,y,z,qx,qy,qz,qw, with or without "
-                      "a name or time before them; 8 to 30");
+    command->add_flag(
+        "--stations", bodies->stations,
+        "Poses at which both stood still, a row of each file for each: x,y,z,qx,qy,qz,qw, with or without "
+        "a name or time before them; 8 to 30");
     const CLI::IsMember which({"a", "b", "both"});
     command->add_option("--w-first", bodies->wFirst, "Whose quaternions are w,x,y,z: a, b or both")->check(which);
     command->add_option("--inverted", bodies->inverted, "Which has the world in the body's frame: a, b or both")

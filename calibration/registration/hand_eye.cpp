@@ -147,7 +147,8 @@ void tellStrays(HandEye& result, const std::vector<Deviation>& deviations, const
                                "see that the tracker neither swaps bodies nor takes reflections for markers"});
 }
 
-HandEye solveSparse(const PoseTrack& a, const PoseTrack& b, const Names& names, const Progress& progress) {
+HandEye solveSparse(const PoseTrack& a, const PoseTrack& b, const Names& names, const Progress& progress,
+                    bool isReread = false) {
     const ClockOffset clocks = clockOffset(a, b, progress.part(0.0, 0.2));
     if (clocks.correlation < kLeastCorrelation)
         registration::refuse(
@@ -155,10 +156,11 @@ HandEye solveSparse(const PoseTrack& a, const PoseTrack& b, const Names& names, 
             "their speeds of turning agree at no offset of the clocks (at best " + number(clocks.correlation, 2) + ")",
             "record both at the same time, joined rigidly, and turn them now fast, now slowly, for 20 s or more" +
                 remedyForStations(a, b));
-    const hand_eye::Read read = hand_eye::readRecordings({a, b, clocks, false, names}, progress.part(0.2, 0.4));
+    const hand_eye::Read read =
+        hand_eye::readRecordings({a, b, clocks, false, names, isReread}, progress.part(0.2, 0.4));
     if (read.other) {
         HandEye result =
-            solveSparse(readAs(a, read.other->a), readAs(b, read.other->b), names, progress.part(0.4, 1.0));
+            solveSparse(readAs(a, read.other->a), readAs(b, read.other->b), names, progress.part(0.4, 1.0), true);
         const std::vector<Finding> warnings = hand_eye::warningsOf(*read.other, names);
         result.warnings.insert(result.warnings.begin(), warnings.begin(), warnings.end());
         return result;
@@ -209,7 +211,8 @@ HandEye solveHandEye(const PoseTrack& first, const PoseTrack& second, const Prog
                                  "record both for 20 s or more" + remedyForStations(first, second));
     PoseTrack a = inSeconds(first, recordingOf(names.a)), b = inSeconds(second, recordingOf(names.b));
     if (countsFrames(a) && countsFrames(b))
-        registration::refuse(Cause::timeUnit, kBodies, "the times of both count frames: nothing tells how many a second",
+        registration::refuse(Cause::timeUnit, kBodies,
+                             "the times of both count frames: nothing tells how many a second",
                              "divide them by the frame rate, so that they are seconds");
     if (countsFrames(a)) a = knownFrames(b, std::move(a), recordingOf(names.a), progress.part(0.0, 0.2));
     if (countsFrames(b)) b = knownFrames(a, std::move(b), recordingOf(names.b), progress.part(0.0, 0.2));

@@ -89,8 +89,8 @@ std::string distanceOf(double metres) { return number(1000.0 * metres, 0) + " mm
     const bool isA = trial.as.a.inverted;
     std::string why = std::string("they fit if one of them has the world in the body's frame, not the body in the "
                                   "world's; nothing tells which: if the ") +
-                      names.a + " has, the bodies are " + distanceOf(isA ? joint : worlds) + " apart, if the " + names.b +
-                      " has, " + distanceOf(isA ? worlds : joint);
+                      names.a + " has, the bodies are " + distanceOf(isA ? joint : worlds) + " apart, if the " +
+                      names.b + " has, " + distanceOf(isA ? worlds : joint);
     if (trial.as.a.wFirst || trial.as.b.wFirst) why += "; and " + wFirstIn(trial.as, names);
     registration::refuse(Cause::inverted, kBodies, std::move(why),
                          "invert each pose of that one; what a camera tells of a board (solvePnP) is the board in the "
@@ -128,12 +128,14 @@ Medians mediansOf(const Attempt& attempt) { return {attempt.medianTurn, attempt.
 } // namespace
 
 Attempt attemptOf(const Recordings& recordings, const Progress& progress) {
-    const auto& [a, b, clocks, areStations, names] = recordings;
+    const PoseTrack &a = recordings.a, &b = recordings.b;
+    const ClockOffset& clocks = recordings.clocks;
+    const bool areStations = recordings.areStations;
     const std::vector<Both> both = together(a, b, clocks);
     if (!areStations && both.size() < kFewestMoments)
         registration::refuse(Cause::tooFewPoints, kBodies, "they share fewer than 20 moments",
                              "record both at the same time, for 20 s or more");
-    const ClosedForm closed = closedForm(both, names);
+    const ClosedForm closed = closedForm(both, recordings.names);
     const Unknowns start{closed.bFromA, closed.worldBFromWorldA, clocks};
     const Fit fit(a, b, progress);
     const auto as = [&](Place place) {
@@ -144,9 +146,7 @@ Attempt attemptOf(const Recordings& recordings, const Progress& progress) {
     progress.report(0.5, "joint");
     const Unknowns byOrigin = as(Place::origin);
     progress.report(1.0, "joint");
-    const auto likely = [&](const Unknowns& u, Place place) {
-        return Noise(fit.deviations(u), b, place).logarithm();
-    };
+    const auto likely = [&](const Unknowns& u, Place place) { return Noise(fit.deviations(u), b, place).logarithm(); };
     Attempt attempt;
     attempt.place = likely(byBody, Place::body) <= likely(byOrigin, Place::origin) ? Place::body : Place::origin;
     attempt.solved = attempt.place == Place::body ? byBody : byOrigin;
@@ -169,6 +169,10 @@ Read readRecordings(const Recordings& recordings, const Progress& progress) {
         refusal = refused.finding();
     }
     const Medians usual = read.attempt ? mediansOf(*read.attempt) : Medians{};
+    if (recordings.isReread) {
+        if (refusal) throw CaptureRefused(*refusal);
+        return read;
+    }
     if (usual.turn > kDoubtfulTurn || usual.shift > kDoubtfulShift)
         read.other = otherReading(recordings, usual, progress);
     if (refusal && !read.other) throw CaptureRefused(*refusal);
@@ -186,9 +190,10 @@ std::vector<Finding> warningsOf(const OtherReading& other, const Names& names) {
 std::vector<Finding> warningsOf(const Attempt& attempt, const Names& names) {
     std::vector<Finding> warnings;
     if (attempt.aInPlace || attempt.bInPlace) {
-        const std::string which = attempt.aInPlace && attempt.bInPlace ? "both turned about their own origins"
-                                  : std::string("the ") + (attempt.aInPlace ? names.a : names.b) +
-                                        " turned about its own origin";
+        const std::string which =
+            attempt.aInPlace && attempt.bInPlace
+                ? "both turned about their own origins"
+                : std::string("the ") + (attempt.aInPlace ? names.a : names.b) + " turned about its own origin";
         warnings.push_back({Cause::turnsInPlace,
                             kBodies,
                             {},

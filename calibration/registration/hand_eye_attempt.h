@@ -17,6 +17,7 @@ struct Recordings {
     ClockOffset clocks;
     bool areStations = false; ///< whose times are numbers of stations, and whose clocks are known
     Names names;
+    bool isReread = false; ///< as another reading has it: none is looked for again
 };
 
 struct Attempt {

@@ -194,22 +194,32 @@ struct Ratio {
     const char* of;
 };
 constexpr std::array kRatios{
-    Ratio{10.0, "as millimetres are to centimetres"},   Ratio{100.0, "as centimetres are to metres"},
-    Ratio{1000.0, "as millimetres are to metres"},      Ratio{1.0 / 0.3048, "as feet are to metres"},
-    Ratio{1.0 / 0.0254, "as inches are to metres"},     Ratio{1.0 / 0.9144, "as yards are to metres"},
-    Ratio{30.48, "as centimetres are to feet"},         Ratio{304.8, "as millimetres are to feet"},
-    Ratio{2.54, "as centimetres are to inches"},        Ratio{25.4, "as millimetres are to inches"},
-    Ratio{12.0, "as inches are to feet"},               Ratio{1e6, "as micrometres are to metres"},
+    Ratio{10.0, "as millimetres are to centimetres"},
+    Ratio{100.0, "as centimetres are to metres"},
+    Ratio{1000.0, "as millimetres are to metres"},
+    Ratio{1.0 / 0.3048, "as feet are to metres"},
+    Ratio{1.0 / 0.0254, "as inches are to metres"},
+    Ratio{1.0 / 0.9144, "as yards are to metres"},
+    Ratio{30.48, "as centimetres are to feet"},
+    Ratio{304.8, "as millimetres are to feet"},
+    Ratio{2.54, "as centimetres are to inches"},
+    Ratio{25.4, "as millimetres are to inches"},
+    Ratio{12.0, "as inches are to feet"},
+    Ratio{1e6, "as micrometres are to metres"},
 };
 constexpr double kNearRatio = 0.04;
 constexpr double kOneUnit = 0.1; ///< of 1: noise of short motions
 
 /// Places that fit well, but at another scale than 1.
 [[noreturn]] void refuseScale(const PlaceFit& place, const Names& names) {
+    if (place.scale <= 0.0)
+        registration::refuse(Cause::modelDoesNotFit, kBodies, "they turn alike, but their places fit at no scale",
+                             "record two bodies that are joined rigidly");
     const bool isLarger = std::abs(place.scale) > 1.0; // the second's
     const double ratio = isLarger ? place.scale : 1.0 / place.scale;
     const std::string larger = isLarger ? names.b : names.a, smaller = isLarger ? names.a : names.b;
-    const std::string why = "the " + larger + "'s places are " + number(ratio, 2) + " times as large as the " + smaller + "'s";
+    const std::string why =
+        "the " + larger + "'s places are " + number(ratio, 2) + " times as large as the " + smaller + "'s";
     const double tolerance = std::max(kNearRatio, std::min(0.1, 3.0 * place.scaleSigma / std::abs(place.scale)));
     for (const Ratio& known : kRatios)
         if (std::abs(ratio / known.value - 1.0) < tolerance)

@@ -17,7 +17,7 @@ constexpr int kUnknowns = 14;
 constexpr int kOffset = 12, kDrift = 13; // of the unknowns; the drift as what it makes of the offset until the end
 constexpr double kUsualDrift = 1e-4;     // of a clock
 constexpr int kRounds = 12;
-constexpr std::size_t kLeastOfRing = 10; // poses
+constexpr std::size_t kLeastOfRing = 10;                // poses
 constexpr double kMedianOfNorm = 1.538;                 ///< of a normal vector in space with sigma 1
 constexpr double kLeastTurn = 1e-6, kLeastPlace = 1e-7; ///< noise below which numbers end
 constexpr double kCauchy = 2.4;                         ///< sigmas of a vector's part

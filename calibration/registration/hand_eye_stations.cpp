@@ -30,9 +30,10 @@ using hand_eye::Unknowns;
 constexpr const char* kStations = "stations of two bodies";
 constexpr std::size_t kFewestStations = 6;
 constexpr std::size_t kFewestOfHalves = 12;
-constexpr double kStationFar = 0.003, kStationTurned = 0.5 * kDegree; ///< at least, of a station that the others contradict
-constexpr double kStationStrays = 5.0;                         ///< times the median
-constexpr double kMostStrayStations = 0.3;                     ///< of all
+constexpr double kStationFar = 0.003,
+                 kStationTurned = 0.5 * kDegree; ///< at least, of a station that the others contradict
+constexpr double kStationStrays = 5.0;           ///< times the median
+constexpr double kMostStrayStations = 0.3;       ///< of all
 
 /// Stations of both, in one order; their times are their numbers.
 struct Pairs {
@@ -57,7 +58,8 @@ Pairs pairsOf(std::span<const Station> a, std::span<const Station> b) {
             pairs.add(station.name, station.pose, same->second->pose);
         else
             alone += (alone.empty() ? "" : ", ") + station.name;
-    if (pairs.names.size() < std::min(a.size(), b.size()) && pairs.names.size() < kFewestStations && a.size() == b.size()) {
+    if (pairs.names.size() < std::min(a.size(), b.size()) && pairs.names.size() < kFewestStations &&
+        a.size() == b.size()) {
         pairs = {};
         for (std::size_t i = 0; i < a.size(); ++i) pairs.add(a[i].name, a[i].pose, b[i].pose);
         return pairs;
@@ -91,7 +93,9 @@ bool leaveOutStrays(Pairs& pairs, const Attempt& attempt) {
             turned < std::max(kStationTurned, kStationStrays * attempt.medianTurn))
             continue;
         left[d.pose] = true;
-        warnings.push_back({Cause::pointSuspicious, kStations, {},
+        warnings.push_back({Cause::pointSuspicious,
+                            kStations,
+                            {},
                             "station " + pairs.names[d.pose] + " is " + number(1000.0 * far, 0) + " mm and " +
                                 number(turned / kDegree, 1) + " degrees from where the others have it",
                             "it counts for nothing; record it again, both bodies at rest"});
@@ -136,9 +140,12 @@ void judgeStations(HandEye& result, const Pairs& pairs, const Attempt& attempt, 
 HandEye solvePairs(Pairs pairs, const Progress& progress) {
     constexpr int kRounds = 3; // what strays much hides what strays less
     const Names names;
+    bool isReread = false;
     for (int round = 0;; ++round) {
-        const hand_eye::Read read = hand_eye::readRecordings({pairs.a, pairs.b, {}, true, names}, progress.part(0.0, 0.5));
+        const hand_eye::Read read =
+            hand_eye::readRecordings({pairs.a, pairs.b, {}, true, names, isReread}, progress.part(0.0, 0.5));
         if (read.other) {
+            isReread = true;
             pairs.a = readAs(std::move(pairs.a), read.other->a);
             pairs.b = readAs(std::move(pairs.b), read.other->b);
             const std::vector<Finding> warnings = hand_eye::warningsOf(*read.other, names);

@@ -25,7 +25,7 @@ constexpr double kSlipped = 0.015;            ///< metres: the usual straying of
 constexpr double kStrays = 4.0;               ///< times the usual straying
 constexpr double kLeastStray = 0.002;         ///< metres: hands tremble
 constexpr double kMedianOfNorm = 1.538;       ///< of a normal vector in space with sigma 1
-constexpr std::size_t kSlideParts = 8;             ///< of the recording, each with a dimple of its own
+constexpr std::size_t kSlideParts = 8;        ///< of the recording, each with a dimple of its own
 constexpr double kLeastSlide = 0.003;         ///< metres
 constexpr double kSlideExplains = 0.75;       ///< of the straying, at most, is left by a dimple that slid
 
@@ -140,8 +140,7 @@ Slide solveSlide(const PoseTrack& swings, const Solution& before, double limit) 
             slide.dimples.emplace_back(solved[at], solved[at + 1], solved[at + 2]);
         slide.strays.clear();
         for (std::size_t i = 0; i < count; ++i)
-            slide.strays.push_back(
-                glm::distance(swings.poses[i].pose * slide.tip, slide.dimples[partOf(i, count)]));
+            slide.strays.push_back(glm::distance(swings.poses[i].pose * slide.tip, slide.dimples[partOf(i, count)]));
         slide.usual = std::max(1e-7, median(slide.strays) / kMedianOfNorm);
         for (std::size_t i = 0; i < count; ++i) {
             const double far = slide.strays[i] / (2.0 * slide.usual);
@@ -157,9 +156,9 @@ Slide solveSlide(const PoseTrack& swings, const Solution& before, double limit) 
             if (far <= slide.by) continue;
             const Eigen::Index at = kTip + 3 * Eigen::Index(i), from = kTip + 3 * Eigen::Index(k);
             slide.by = far;
-            slide.sigma = std::sqrt(std::max(0.0, inverse.block<3, 3>(at, at).trace() +
-                                                      inverse.block<3, 3>(from, from).trace() -
-                                                      2.0 * inverse.block<3, 3>(at, from).trace()));
+            slide.sigma =
+                std::sqrt(std::max(0.0, inverse.block<3, 3>(at, at).trace() + inverse.block<3, 3>(from, from).trace() -
+                                            2.0 * inverse.block<3, 3>(at, from).trace()));
         }
     return slide;
 }
@@ -176,7 +175,9 @@ Finding slid(const Slide& slide) {
 /// Stretches of poses that stray, as findings with their times.
 void tellSlips(Pivot& pivot, const PoseTrack& swings, const std::vector<double>& strays, double limit) {
     const double begin = swings.poses.front().seconds, second = likelyTimeUnit(swings).seconds;
-    const auto since = [&](std::size_t pose) { return number((swings.poses[pose].seconds - begin) * second, 1) + " s"; };
+    const auto since = [&](std::size_t pose) {
+        return number((swings.poses[pose].seconds - begin) * second, 1) + " s";
+    };
     for (std::size_t i = 0; i < swings.poses.size(); ++i) {
         if (strays[i] < limit) continue;
         const std::size_t first = i;

@@ -32,10 +32,10 @@ struct UnitName {
     std::string_view name;
     double size;
 };
-constexpr std::array kTimes{UnitName{"ms", 1e-3}, UnitName{"us", 1e-6}, UnitName{"ns", 1e-9},
-                            UnitName{"milliseconds", 1e-3}, UnitName{"microseconds", 1e-6},
-                            UnitName{"nanoseconds", 1e-9}};
-constexpr std::array kLengths{UnitName{"mm", 1e-3}, UnitName{"cm", 1e-2}, UnitName{"millimetres", 1e-3},
+constexpr std::array kTimes{UnitName{"ms", 1e-3},           UnitName{"us", 1e-6},
+                            UnitName{"ns", 1e-9},           UnitName{"milliseconds", 1e-3},
+                            UnitName{"microseconds", 1e-6}, UnitName{"nanoseconds", 1e-9}};
+constexpr std::array kLengths{UnitName{"mm", 1e-3},          UnitName{"cm", 1e-2},     UnitName{"millimetres", 1e-3},
                               UnitName{"millimeters", 1e-3}, UnitName{"feet", 0.3048}, UnitName{"ft", 0.3048},
                               UnitName{"inches", 0.0254}};
 
@@ -70,8 +70,8 @@ char partOf(std::vector<std::string> words) {
     if (turns || (last.size() > 1 && isAnyOf(last.substr(0, last.size() - 1), {"q", "quat", "rot", "o"})))
         return static_cast<char>(axis - 'a' + 'A');
     if (axis == 'w') return alone && words.size() == 1 ? 'W' : static_cast<char>(0);
-    const bool moves = anyIs({"v", "vel", "velocity", "a", "acc", "acceleration", "b", "omega", "gyro", "angular", "linear",
-                              "twist", "euler", "angle"});
+    const bool moves = anyIs({"v", "vel", "velocity", "a", "acc", "acceleration", "b", "omega", "gyro", "angular",
+                              "linear", "twist", "euler", "angle"});
     const bool isPlace = alone || isAnyOf(last.substr(0, last.size() - 1), {"t", "p", "pos", "position", "trans"});
     return isPlace && !moves ? axis : static_cast<char>(0);
 }
@@ -96,6 +96,9 @@ std::optional<PoseColumns> columnsByName(std::span<const std::string_view> names
             frame = i;
         }
     }
+    // In another language, or a name of a station.
+    const bool firstIsFree = std::ranges::find(parts, std::optional<std::size_t>(0)) == parts.end();
+    if (!time && !frame && firstIsFree) time = 0;
     if (time || frame) found.columns.push_back(time ? *time : *frame);
     for (const auto& part : parts) {
         if (!part) return std::nullopt;

@@ -9,7 +9,7 @@
 namespace lumorph {
 
 struct PoseColumns {
-    std::vector<std::size_t> columns; ///< of time (where one is named), x, y, z, qx, qy, qz, qw
+    std::vector<std::size_t> columns;        ///< of time (where one is named), x, y, z, qx, qy, qz, qw
     double timeUnit = 1.0, lengthUnit = 1.0; ///< seconds and metres of one, where the names say so
 };
 

@@ -175,11 +175,14 @@ Pose poseOf(std::span<const double, 7> n, double lengthUnit, const std::string& 
 TimedPose timedPoseOf(std::string_view line, Columns& columns, const std::string& place) {
     std::array<double, 8> n{};
     const auto fields = columns.ordered(line);
-    if (!fields || !takeNumbers(*fields, n))
+    if (!fields || !takeNumbers(*fields, n)) {
+        const bool isStation = fields && fields->size() == 7;
         throw DataError(place,
-                        (fields && fields->size() == 7 ? "it has no time: " : "it is not eight finite numbers: ") +
-                            inQuotes(line, 60),
-                        "write time, x, y, z, qx, qy, qz, qw with commas or blanks between, in seconds and metres");
+                        (isStation ? "it has no time: " : "it is not eight finite numbers: ") + inQuotes(line, 60),
+                        std::string("write time, x, y, z, qx, qy, qz, qw with commas or blanks between, in seconds and "
+                                    "metres") +
+                            (isStation ? "; poses that stood still are solved with --stations, without times" : ""));
+    }
     return {n[0] * columns.timeUnit(), poseOf(std::span(n).last<7>(), columns.lengthUnit(), place)};
 }
 
@@ -196,9 +199,10 @@ void bringToSeconds(PoseTrack& track, const std::string& name) {
     track.warnings.push_back({Cause::timeUnit,
                               name,
                               {},
-                              std::string("its times are ") + (milli   ? "milliseconds"
-                                                               : micro ? "microseconds"
-                                                                       : "nanoseconds") +
+                              std::string("its times are ") +
+                                  (milli   ? "milliseconds"
+                                   : micro ? "microseconds"
+                                           : "nanoseconds") +
                                   " since 1970",
                               "they were taken as that; write seconds"});
 }

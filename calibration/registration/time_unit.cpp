@@ -45,9 +45,8 @@ PoseTrack scaled(PoseTrack track, double seconds) {
 PoseTrack middleOf(const PoseTrack& track, double seconds) {
     const double middle = 0.5 * (track.poses.front().seconds + track.poses.back().seconds);
     PoseTrack part;
-    std::ranges::copy_if(track.poses, std::back_inserter(part.poses), [&](const TimedPose& at) {
-        return std::abs(at.seconds - middle) <= 0.5 * seconds;
-    });
+    std::ranges::copy_if(track.poses, std::back_inserter(part.poses),
+                         [&](const TimedPose& at) { return std::abs(at.seconds - middle) <= 0.5 * seconds; });
     return part;
 }
 
@@ -100,20 +99,19 @@ TimeUnit likelyTimeUnit(const PoseTrack& track) {
 bool countsFrames(const PoseTrack& track) {
     const double step = stepOf(track);
     return track.poses.size() >= kLeastPoses && step >= 1.0 && step <= kLongestFrameStep &&
-           std::ranges::all_of(track.poses,
-                               [](const TimedPose& at) { return at.seconds == std::round(at.seconds); });
+           std::ranges::all_of(track.poses, [](const TimedPose& at) { return at.seconds == std::round(at.seconds); });
 }
 
 PoseTrack inSeconds(PoseTrack track, const std::string& name) {
     const TimeUnit unit = likelyTimeUnit(track);
     if (unit.seconds == 1.0) return track;
     PoseTrack seconds = scaled(std::move(track), unit.seconds);
-    seconds.warnings.push_back({Cause::timeUnit,
-                                name,
-                                {},
-                                std::string("its times are ") + unit.name + ": " +
-                                    number(1.0 / stepOf(seconds), 0) + " poses a second",
-                                "they were taken as that; write seconds"});
+    seconds.warnings.push_back(
+        {Cause::timeUnit,
+         name,
+         {},
+         std::string("its times are ") + unit.name + ": " + number(1.0 / stepOf(seconds), 0) + " poses a second",
+         "they were taken as that; write seconds"});
     return seconds;
 }
 
@@ -144,8 +142,7 @@ std::optional<PoseTrack> inSecondsBy(const PoseTrack& other, PoseTrack frames, c
         span *= 2.0;
     }
     if (best.correlation < kSureCorrelation) return std::nullopt;
-    for (int round = 0; round < 2; ++round)
-        best.framesPerSecond = nearerRate(other, frames, best.framesPerSecond);
+    for (int round = 0; round < 2; ++round) best.framesPerSecond = nearerRate(other, frames, best.framesPerSecond);
     PoseTrack found = scaled(std::move(frames), 1.0 / best.framesPerSecond);
     found.warnings.push_back({Cause::timeUnit,
                               name,

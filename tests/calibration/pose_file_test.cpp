@@ -30,31 +30,47 @@ TEST(PoseFile, FormatsOfOtherProgramsGiveTheSamePoses) {
         std::size_t warnings = 0;
     } rows[] = {
         {"commas", "12.5,0.36,-1.25,2.5,0.2,-0.4,0.4,0.8\n12.52,0.36,-1.25,2.5,0.2,-0.4,0.4,0.8\n"},
-        {"a byte order mark", "\xEF\xBB\xBF" "12.5,0.36,-1.25,2.5,0.2,-0.4,0.4,0.8\n12.52,0.36,-1.25,2.5,0.2,-0.4,0.4,0.8"},
-        {"a head row", "time,x,y,z,qx,qy,qz,qw\n12.5,0.36,-1.25,2.5,0.2,-0.4,0.4,0.8\n12.52,0.36,-1.25,2.5,0.2,-0.4,0.4,0.8\n"},
-        {"a mark and a head row, ends of Windows",
-         "\xEF\xBB\xBFtime,x,y,z,qx,qy,qz,qw\r\n12.5,0.36,-1.25,2.5,0.2,-0.4,0.4,0.8\r\n12.52,0.36,-1.25,2.5,0.2,-0.4,0.4,0.8\r\n"},
+        {"a byte order mark", "\xEF\xBB\xBF"
+                              "12.5,0.36,-1.25,2.5,0.2,-0.4,0.4,0.8\n12.52,0.36,-1.25,2.5,0.2,-0.4,0.4,0.8"},
+        {"a head row",
+         "time,x,y,z,qx,qy,qz,qw\n12.5,0.36,-1.25,2.5,0.2,-0.4,0.4,0.8\n12.52,0.36,-1.25,2.5,0.2,-0.4,0.4,0.8\n"},
+        {"a mark and a head row, ends of Windows", "\xEF\xBB\xBFtime,x,y,z,qx,qy,qz,qw\r\n12.5,0.36,-1.25,2.5,0.2,-0.4,"
+                                                   "0.4,0.8\r\n12.52,0.36,-1.25,2.5,0.2,-0.4,0.4,0.8\r\n"},
         {"ends of an old Macintosh", "12.5,0.36,-1.25,2.5,0.2,-0.4,0.4,0.8\r12.52,0.36,-1.25,2.5,0.2,-0.4,0.4,0.8\r"},
-        {"names without meaning", "c1,c2,c3,c4,c5,c6,c7,c8\n12.5,0.36,-1.25,2.5,0.2,-0.4,0.4,0.8\n12.52,0.36,-1.25,2.5,0.2,-0.4,0.4,0.8\n"},
-        {"w first by name", "time,x,y,z,qw,qx,qy,qz\n12.5,0.36,-1.25,2.5,0.8,0.2,-0.4,0.4\n12.52,0.36,-1.25,2.5,0.8,0.2,-0.4,0.4\n"},
-        {"TUM", "# timestamp tx ty tz qx qy qz qw\n12.5 0.36 -1.25 2.5 0.2 -0.4 0.4 0.8\n12.52  0.36 -1.25 2.5 0.2 -0.4 0.4 0.8 \n"},
+        {"names without meaning",
+         "c1,c2,c3,c4,c5,c6,c7,c8\n12.5,0.36,-1.25,2.5,0.2,-0.4,0.4,0.8\n12.52,0.36,-1.25,2.5,0.2,-0.4,0.4,0.8\n"},
+        {"w first by name",
+         "time,x,y,z,qw,qx,qy,qz\n12.5,0.36,-1.25,2.5,0.8,0.2,-0.4,0.4\n12.52,0.36,-1.25,2.5,0.8,0.2,-0.4,0.4\n"},
+        {"TUM", "# timestamp tx ty tz qx qy qz qw\n12.5 0.36 -1.25 2.5 0.2 -0.4 0.4 0.8\n12.52  0.36 -1.25 2.5 0.2 "
+                "-0.4 0.4 0.8 \n"},
         {"tabs", "12.5\t0.36\t-1.25\t2.5\t0.2\t-0.4\t0.4\t0.8\n12.52\t0.36\t-1.25\t2.5\t0.2\t-0.4\t0.4\t0.8\n"},
         {"semicolons", "12.5;0.36;-1.25;2.5;0.2;-0.4;0.4;0.8\n12.52; 0.36; -1.25; 2.5; 0.2; -0.4; 0.4; 0.8;\n"},
-        {"decimal commas", "Zeit;x;y;z;qx;qy;qz;qw\n12,5;0,36;-1,25;2,5;0,2;-0,4;0,4;0,8\n12,52;0,36;-1,25;2,5;0,2;-0,4;0,4;0,8\n"},
-        {"quotes and signs", "\"12.5\",\"+0.36\",\"-1.25\",\"2.5\",\"0.2\",\"-0.4\",\"0.4\",\"0.8\"\n12.52,0.36,-1.25,+2.5,0.2,-0.4,0.4,0.8\n"},
-        {"units by name", "time_ms,x [mm],y [mm],z [mm],qx,qy,qz,qw\n12500,360,-1250,2500,0.2,-0.4,0.4,0.8\n12520,360,-1250,2500,0.2,-0.4,0.4,0.8\n"},
+        {"decimal commas",
+         "Zeit;x;y;z;qx;qy;qz;qw\n12,5;0,36;-1,25;2,5;0,2;-0,4;0,4;0,8\n12,52;0,36;-1,25;2,5;0,2;-0,4;0,4;0,8\n"},
+        {"quotes and signs", "\"12.5\",\"+0.36\",\"-1.25\",\"2.5\",\"0.2\",\"-0.4\",\"0.4\",\"0.8\"\n12.52,0.36,-1.25,+"
+                             "2.5,0.2,-0.4,0.4,0.8\n"},
+        {"units by name",
+         "time_ms,x [mm],y [mm],z "
+         "[mm],qx,qy,qz,qw\n12500,360,-1250,2500,0.2,-0.4,0.4,0.8\n12520,360,-1250,2500,0.2,-0.4,0.4,0.8\n"},
         {"EuRoC",
-         "#timestamp [ns], p_RS_R_x [m], p_RS_R_y [m], p_RS_R_z [m], q_RS_w [], q_RS_x [], q_RS_y [], q_RS_z [], v_RS_R_x [m s^-1], b_w_RS_S_x [rad s^-1]\n"
-         "1403636580838555648,0.36,-1.25,2.5,0.8,0.2,-0.4,0.4,-0.03,0.1\n1403636580858555648,0.36,-1.25,2.5,0.8,0.2,-0.4,0.4,-0.03,0.1\n",
+         "#timestamp [ns], p_RS_R_x [m], p_RS_R_y [m], p_RS_R_z [m], q_RS_w [], q_RS_x [], q_RS_y [], q_RS_z [], "
+         "v_RS_R_x [m s^-1], b_w_RS_S_x [rad s^-1]\n"
+         "1403636580838555648,0.36,-1.25,2.5,0.8,0.2,-0.4,0.4,-0.03,0.1\n1403636580858555648,0.36,-1.25,2.5,0.8,0.2,-0."
+         "4,0.4,-0.03,0.1\n",
          1403636580.838555648, 1403636580.858555648},
         {"rostopic",
-         "%time,field.header.seq,field.header.stamp,field.header.frame_id,field.pose.position.x,field.pose.position.y,field.pose.position.z,field.pose.orientation.x,field.pose.orientation.y,field.pose.orientation.z,field.pose.orientation.w\n"
-         "1403636580838555648,7,1403636580838555600,map,0.36,-1.25,2.5,0.2,-0.4,0.4,0.8\n1403636580858555648,8,1403636580858555600,map,0.36,-1.25,2.5,0.2,-0.4,0.4,0.8\n",
+         "%time,field.header.seq,field.header.stamp,field.header.frame_id,field.pose.position.x,field.pose.position.y,"
+         "field.pose.position.z,field.pose.orientation.x,field.pose.orientation.y,field.pose.orientation.z,field.pose."
+         "orientation.w\n"
+         "1403636580838555648,7,1403636580838555600,map,0.36,-1.25,2.5,0.2,-0.4,0.4,0.8\n1403636580858555648,8,"
+         "1403636580858555600,map,0.36,-1.25,2.5,0.2,-0.4,0.4,0.8\n",
          1403636580.838555648, 1403636580.858555648, 1},
         {"microseconds since 1970",
          "1403636580838555,0.36,-1.25,2.5,0.2,-0.4,0.4,0.8\n1403636580858555,0.36,-1.25,2.5,0.2,-0.4,0.4,0.8\n",
          1403636580.838555, 1403636580.858555, 1},
-        {"frames beside times", "Frame,Time (Seconds),x,y,z,qx,qy,qz,qw\n1,12.5,0.36,-1.25,2.5,0.2,-0.4,0.4,0.8\n2,12.52,0.36,-1.25,2.5,0.2,-0.4,0.4,0.8\n"},
+        {"frames beside times", "Frame,Time "
+                                "(Seconds),x,y,z,qx,qy,qz,qw\n1,12.5,0.36,-1.25,2.5,0.2,-0.4,0.4,0.8\n2,12.52,0.36,-1."
+                                "25,2.5,0.2,-0.4,0.4,0.8\n"},
     };
     for (const auto& row : rows) {
         const PoseTrack track = parsePoseTrack(row.text, "poses.csv");
@@ -141,7 +157,8 @@ TEST(PoseFile, StationsNeedNoTime) {
     ASSERT_EQ(bare.size(), 2U);
     EXPECT_EQ(bare[1].name, "2");
     expectPose({0.0, bare[0].pose}, 0.0, "bare");
-    const std::vector<Station> named = parseStations("left,0.36,-1.25,2.5,0.2,-0.4,0.4,0.8\nright,0,0,0,0,0,0,1\n", "a");
+    const std::vector<Station> named =
+        parseStations("left,0.36,-1.25,2.5,0.2,-0.4,0.4,0.8\nright,0,0,0,0,0,0,1\n", "a");
     EXPECT_EQ(named[0].name, "left");
     expectPose({0.0, named[0].pose}, 0.0, "named");
     EXPECT_THROW((void)parseStations("a,0,0,0,0,0,0,1\na,0,0,0,0,0,0,1\n", "a"), DataError);

@@ -15,8 +15,8 @@
 #include "calibration/registration/pose_file.h"
 #include "tracked_motion.h"
 
-// Recordings of two joined bodies as people bring them, made wrong by name in one way each, against the known truth: what
-// can be read is read and said, what cannot is refused by its cause.
+// Recordings of two joined bodies as people bring them, made wrong by name in one way each, against the known truth:
+// what can be read is read and said, what cannot is refused by its cause.
 
 namespace lumorph {
 namespace {
@@ -41,8 +41,7 @@ std::string written(const Rows& rows, bool wFirst, double length) {
     for (const Row& row : rows) {
         const glm::dvec3 p = length * row.pose.position;
         const glm::dquat& q = row.pose.rotation;
-        const std::array<double, 4> turn =
-            wFirst ? std::array{q.w, q.x, q.y, q.z} : std::array{q.x, q.y, q.z, q.w};
+        const std::array<double, 4> turn = wFirst ? std::array{q.w, q.x, q.y, q.z} : std::array{q.x, q.y, q.z, q.w};
         std::array<char, 240> line{};
         std::snprintf(line.data(), line.size(), "%.6f,%.6f,%.6f,%.6f,%.6f,%.6f,%.6f,%.6f\n", row.time, p.x, p.y, p.z,
                       turn[0], turn[1], turn[2], turn[3]);
@@ -153,6 +152,10 @@ std::vector<Kind> allKinds() {
         {"rows late in A", "rows_out_of_order", true, [](Files& f) { writeLate(f.a); }},
         {"rows late in B", "rows_out_of_order", true, [](Files& f) { writeLate(f.b); }},
         {"blocks of two writers", "rows_out_of_order", true, [](Files& f) { writeInBlocks(f.a); }},
+        {"a second writer is 30 ms behind", "rows_out_of_order", true,
+         [](Files& f) {
+             for (std::size_t i = 1; i < f.a.size(); i += 2) f.a[i].time -= 0.03;
+         }},
         {"rows twice", "doubled_rows", true, [](Files& f) { writeTwice(f.a, 0); }},
         {"rows twice, the second later", "doubled_rows", true, [](Files& f) { writeTwice(f.b, 2); }},
         {"A in ms", "time_unit", true, [](Files& f) { scaleTimes(f.a, 1e3); }},
@@ -210,7 +213,9 @@ Verdict verdictOf(const std::string& a, const std::string& b) {
     return verdict;
 }
 
-double turnBeside(const Pose& a, const Pose& b) { return kPerRadian * angleOf(glm::conjugate(a.rotation) * b.rotation); }
+double turnBeside(const Pose& a, const Pose& b) {
+    return kPerRadian * angleOf(glm::conjugate(a.rotation) * b.rotation);
+}
 double millimetresBeside(const Pose& a, const Pose& b) { return 1000.0 * glm::distance(a.position, b.position); }
 
 void check(const Kind& kind, unsigned seed) {
@@ -218,8 +223,8 @@ void check(const Kind& kind, unsigned seed) {
     if (kind.move) kind.move(truth);
     Files files = truth.files(seed);
     kind.spoil(files);
-    const Verdict verdict = verdictOf(written(files.a, files.wFirstA, files.lengthA),
-                                      written(files.b, files.wFirstB, files.lengthB));
+    const Verdict verdict =
+        verdictOf(written(files.a, files.wFirstA, files.lengthA), written(files.b, files.wFirstB, files.lengthB));
     const std::string what = std::string(kind.name) + ", seed " + std::to_string(seed) + ": " + verdict.words;
     if (!kind.solved) {
         EXPECT_EQ(verdict.refusal, kind.key) << what;
@@ -314,9 +319,7 @@ TEST(PoseReadings, NoUnitIsClaimedWhereNothingFits) {
         const test::HandMotion elsewhere(seed + 7);
         const Motion turning = one.motion;
         // They turn alike, but are carried about by different hands.
-        other.motion = [turning, elsewhere](double t) {
-            return Pose{elsewhere.at(t).position, turning(t).rotation};
-        };
+        other.motion = [turning, elsewhere](double t) { return Pose{elsewhere.at(t).position, turning(t).rotation}; };
         const Verdict verdict =
             verdictOf(written(one.files(seed).a, false, 1.0), written(other.files(seed).b, false, 1.0));
         EXPECT_EQ(verdict.refusal, "model_does_not_fit") << verdict.words;
