@@ -266,8 +266,8 @@ void warnOfTip(LandmarkFit& result, const std::vector<Touched>& touched, const L
 LandmarkFit fitLandmarks(const PoseTrack& recordedPointer, const std::optional<PoseTrack>& recordedReference,
                          const std::vector<NamedPoint>& model, const glm::dvec3& tip) {
     const PoseTrack pointer = inKnownSeconds(recordedPointer, "pointer");
-    std::optional<PoseTrack> reference;
-    if (recordedReference) reference = inKnownSeconds(*recordedReference, "reference");
+    const std::optional<PoseTrack> reference =
+        recordedReference ? std::optional(inKnownSeconds(*recordedReference, "reference")) : std::nullopt;
     if (model.size() < 3)
         registration::refuse(Cause::tooFewPoints, kTouches, "the model has fewer than three points",
                              "give it four or more");
