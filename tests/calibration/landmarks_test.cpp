@@ -72,8 +72,8 @@ TEST(Pivot, ADimpleThatSlidesIsSaidAndTheTipFoundAllTheSame) {
             for (const double far : {0.006, 0.010, 0.025}) {
                 const Pivot pivot = solvePivot(test::trackOf(slid(atOnce, far), 15.0, 60.0, seed));
                 const std::string what = std::to_string(1000.0 * far) + (atOnce ? " mm at once" : " mm slowly");
-                ASSERT_EQ(pivot.warnings.size(), 1U) << what;
-                EXPECT_EQ(keyOf(pivot.warnings[0].cause), "tip_slipped") << what;
+                ASSERT_FALSE(pivot.warnings.empty()) << what;
+                for (const Finding& warning : pivot.warnings) EXPECT_EQ(keyOf(warning.cause), "tip_slipped") << what;
                 double said = 0.0;
                 ASSERT_EQ(std::sscanf(pivot.warnings[0].why.c_str(), "the dimple slid by %lf mm", &said), 1) << what;
                 EXPECT_NEAR(said, 1000.0 * far, std::max(2.0, 150.0 * far)) << what; // parts are as long as an eighth
