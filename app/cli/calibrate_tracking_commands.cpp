@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <memory>
 #include <string>
@@ -8,8 +9,10 @@
 #include "app/cli/calibrate_output.h"
 #include "app/cli/commands.h"
 #include "calibration/registration/hand_eye.h"
+#include "calibration/registration/hand_eye_stations.h"
 #include "calibration/registration/landmarks.h"
 #include "calibration/registration/pivot.h"
+#include "calibration/registration/pose_file.h"
 
 // Tracked bodies: how they hang together, where a pointer's tip is, where a model lies on its body.
 
@@ -23,6 +26,8 @@ struct TrackingArguments {
     std::string first, second; ///< recordings
     std::string model;         ///< a table of points
     std::vector<double> tip{0.0, 0.0, 0.0};
+    bool stations = false;        ///< poses that stood still
+    std::string wFirst, inverted; ///< "a", "b" or "both"
     bool json = false;
 };
 
@@ -47,41 +52,74 @@ void printPose(const char* name, const Pose& pose) {
                 kMillimetres * pose.position.y, kMillimetres * pose.position.z, turn.x, turn.y, turn.z);
 }
 
-void handEye(const TrackingArguments& arguments, const Session& session) {
-    const HandEye result = orRefused(arguments.json, [&] {
+/// How the first or second recording was said to be written.
+PoseReading readingOf(const TrackingArguments& arguments, bool second) {
+    const auto isOf = [second](const std::string& which) { return which == "both" || which == (second ? "b" : "a"); };
+    return {isOf(arguments.wFirst), isOf(arguments.inverted)};
+}
+
+HandEye solvedHandEye(const TrackingArguments& arguments, const Session& session) {
+    if (!arguments.stations) {
         const PoseTrack a = readTrack(arguments.first, session), b = readTrack(arguments.second, session);
-        return solveHandEye(a, b, session.progress());
-    });
+        return solveHandEye(readAs(a, readingOf(arguments, false)), readAs(b, readingOf(arguments, true)),
+                            session.progress());
+    }
+    const auto stationsOf = [&](const std::string& path, PoseReading reading) {
+        std::vector<Station> stations = parseStations(textOf(path, session), inputName(path));
+        for (Station& station : stations) station.pose = readAs(station.pose, reading);
+        return stations;
+    };
+    const std::vector<Station> a = stationsOf(arguments.first, readingOf(arguments, false));
+    const std::vector<Station> b = stationsOf(arguments.second, readingOf(arguments, true));
+    return solveHandEyeStations(a, b, session.progress());
+}
+
+void handEye(const TrackingArguments& arguments, const Session& session) {
+    const HandEye result = orRefused(arguments.json, [&] { return solvedHandEye(arguments, session); });
     Session::endProgress();
     if (arguments.json) {
-        printJson({{"bFromA", poseOf(result.bFromA)},
-                   {"worldBFromWorldA", poseOf(result.worldBFromWorldA)},
-                   {"timeOffset", result.timeOffset},
-                   {"clockDrift", result.clockDrift},
-                   {"residual",
-                    {{"rotationDegrees", {{"median", kDegreesPerRadian * result.medianTurn}}},
-                     {"positionMm", {{"median", kMillimetres * result.medianShift}}}}},
-                   {"halvesDiffer",
-                    {{"rotationDegrees", kDegreesPerRadian * result.halvesTurn},
-                     {"positionMm", kMillimetres * result.halvesShift}}},
-                   {"sigma",
-                    {{"rotationDegrees", kDegreesPerRadian * result.turnSigma},
-                     {"positionMm", kMillimetres * result.shiftSigma},
-                     {"timeOffset", result.offsetSigma},
-                     {"clockDrift", result.driftSigma}}},
-                   {"poses", result.poses},
-                   {"warnings", jsonOf(result.warnings)}});
+        nlohmann::json sigma = {{"rotationDegrees", kDegreesPerRadian * result.turnSigma},
+                                {"positionMm", kMillimetres * result.shiftSigma}};
+        nlohmann::json found = {{"bFromA", poseOf(result.bFromA)},
+                                {"worldBFromWorldA", poseOf(result.worldBFromWorldA)},
+                                {"residual",
+                                 {{"rotationDegrees", {{"median", kDegreesPerRadian * result.medianTurn}}},
+                                  {"positionMm", {{"median", kMillimetres * result.medianShift}}}}},
+                                {"halvesDiffer",
+                                 {{"rotationDegrees", kDegreesPerRadian * result.halvesTurn},
+                                  {"positionMm", kMillimetres * result.halvesShift}}},
+                                {arguments.stations ? "stations" : "poses", result.poses},
+                                {"warnings", jsonOf(result.warnings)}};
+        if (!arguments.stations) {
+            found["timeOffset"] = result.timeOffset;
+            found["clockDrift"] = result.clockDrift;
+            sigma["timeOffset"] = result.offsetSigma;
+            sigma["clockDrift"] = result.driftSigma;
+        }
+        found["sigma"] = std::move(sigma);
+        printJson(found);
         return;
     }
     printPose("B from A", result.bFromA);
     printPose("world B from world A", result.worldBFromWorldA);
-    std::printf("clock of B minus A   %.4f s, drifting by %.1f ppm (one sigma: %.1f)\n", result.timeOffset,
-                1e6 * result.clockDrift, 1e6 * result.driftSigma);
-    std::printf("single poses differ by %.2f degrees, %.1f mm; the halves of the recording by %.2f degrees, %.1f mm\n",
-                kDegreesPerRadian * result.medianTurn, kMillimetres * result.medianShift,
-                kDegreesPerRadian * result.halvesTurn, kMillimetres * result.halvesShift);
-    std::printf("sure to %.2f degrees, %.1f mm, %.1f ms (one sigma)\n", kDegreesPerRadian * result.turnSigma,
-                kMillimetres * result.shiftSigma, 1000.0 * result.offsetSigma);
+    if (arguments.stations) {
+        std::printf("%zu stations differ by %.2f degrees, %.1f mm", result.poses, kDegreesPerRadian * result.medianTurn,
+                    kMillimetres * result.medianShift);
+        if (std::isfinite(result.halvesShift))
+            std::printf("; every other one from the rest by %.2f degrees, %.1f mm",
+                        kDegreesPerRadian * result.halvesTurn, kMillimetres * result.halvesShift);
+        std::printf("\nsure to %.2f degrees, %.1f mm (one sigma)\n", kDegreesPerRadian * result.turnSigma,
+                    kMillimetres * result.shiftSigma);
+    } else {
+        std::printf("clock of B minus A   %.4f s, drifting by %.1f ppm (one sigma: %.1f)\n", result.timeOffset,
+                    1e6 * result.clockDrift, 1e6 * result.driftSigma);
+        std::printf(
+            "single poses differ by %.2f degrees, %.1f mm; the halves of the recording by %.2f degrees, %.1f mm\n",
+            kDegreesPerRadian * result.medianTurn, kMillimetres * result.medianShift,
+            kDegreesPerRadian * result.halvesTurn, kMillimetres * result.halvesShift);
+        std::printf("sure to %.2f degrees, %.1f mm, %.1f ms (one sigma)\n", kDegreesPerRadian * result.turnSigma,
+                    kMillimetres * result.shiftSigma, 1000.0 * result.offsetSigma);
+    }
     printFindings(result.warnings);
 }
 
@@ -144,6 +182,14 @@ void addCalibrateTracking(CLI::App& group, Session& session) {
         group.add_subcommand("handeye", "Two bodies that are joined, each tracked in its own world by its own clock");
     command->add_option("a", bodies->first, kPosesHelp)->required();
     command->add_option("b", bodies->second, "The same of the other body")->required();
+    command->add_flag(
+        "--stations", bodies->stations,
+        "Poses at which both stood still, a row of each file for each: x,y,z,qx,qy,qz,qw, with or without "
+        "a name or time before them; 8 to 30");
+    const CLI::IsMember which({"a", "b", "both"});
+    command->add_option("--w-first", bodies->wFirst, "Whose quaternions are w,x,y,z: a, b or both")->check(which);
+    command->add_option("--inverted", bodies->inverted, "Which has the world in the body's frame: a, b or both")
+        ->check(which);
     command->add_flag("--json", bodies->json, "Print one JSON value");
     command->callback([bodies, &session] { handEye(*bodies, session); });
 

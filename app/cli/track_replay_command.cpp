@@ -9,7 +9,8 @@
 
 #include "app/cli/calibrate_output.h"
 #include "app/cli/commands.h"
-#include "calibration/registration/pose_track.h"
+#include "calibration/registration/pose_file.h"
+#include "calibration/registration/time_unit.h"
 #include "core/base/error.h"
 #include "core/base/text.h"
 #include "core/loop/prediction_replay.h"
@@ -78,15 +79,20 @@ void replayTrack(const ReplayArguments& arguments, const Session& session) {
     const std::vector<std::byte> bytes = session.readInput(arguments.recording);
     const std::string name = inputName(arguments.recording);
     const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
-    const PoseTrack track = orRefused(arguments.json, [&] { return parsePoseTrack(text, name); });
+    const PoseTrack track = orRefused(arguments.json, [&] { return inKnownSeconds(parsePoseTrack(text, name), name); });
     const PredictionReplay replay = replayPrediction(samplesOf(track), ahead, noise, arguments.seed);
     if (ahead > PoseStream::kFarthestAhead) printWarnings({"nothing is predicted farther ahead than 150 ms"});
-    if (arguments.json) return printJson(jsonOf(replay));
+    if (arguments.json) {
+        nlohmann::json json = jsonOf(replay);
+        json["warnings"] = jsonOf(track.warnings);
+        return printJson(json);
+    }
     printError("predicted", replay.predicted, 0.0);
     printError("constant velocity", replay.constantVelocity, replay.velocitySeconds);
     printError("a straight line fitted", replay.line, replay.lineSeconds);
     std::printf("turns: %.2f degrees RMS predicted, %.2f by constant velocity; %zu poses\n",
                 kDegreesPerRadian * replay.turnRms, kDegreesPerRadian * replay.constantTurnRms, replay.count);
+    printFindings(track.warnings);
     finishOutput();
 }
 

@@ -19,6 +19,7 @@ namespace {
 constexpr double kWindow = 0.16;          ///< seconds over which a turn is measured: noise of single poses averages out
 constexpr double kShared = 1.0 / 3.0;     ///< of the shorter recording
 constexpr double kFastest = 2.5;          ///< times the usual speed
+constexpr double kFastestHand = 15.0;     ///< radians a second that a body is turned at
 constexpr std::ptrdiff_t kElsewhere = 25; ///< steps from the best offset: another peak
 constexpr std::size_t kMostSteps = 60'000; ///< 20 minutes
 
@@ -31,6 +32,16 @@ constexpr double kSmallDrift = 0.002;   ///< seconds over the recording that are
 constexpr double kOffLine = 0.01;       ///< seconds by which offsets of parts differ from an even drift
 constexpr std::size_t kAskEvery = 4096; ///< steps between two questions whether it is cancelled
 constexpr std::string_view kStage = "clocks";
+
+/// The speed of the middle of all that was turned, not of all time: an arm may rest for most of it.
+double usualSpeed(std::vector<double> speeds) {
+    std::ranges::sort(speeds);
+    double half = 0.0;
+    for (const double speed : speeds) half += 0.5 * std::min(speed, kFastestHand);
+    for (const double speed : speeds)
+        if ((half -= std::min(speed, kFastestHand)) <= 0.0) return std::min(speed, kFastestHand);
+    return 0.0;
+}
 
 /// Angular speeds on an even grid from the first pose on; NaN in gaps.
 std::vector<double> speedsOf(const PoseTrack& track, const Progress& progress) {
@@ -51,7 +62,7 @@ std::vector<double> speedsOf(const PoseTrack& track, const Progress& progress) {
     // A tracker that jumps would count for more than all true turns.
     std::vector<double> known;
     std::ranges::copy_if(speeds, std::back_inserter(known), [](double speed) { return !std::isnan(speed); });
-    const double most = kFastest * median(std::move(known));
+    const double most = kFastest * usualSpeed(std::move(known));
     for (double& speed : speeds)
         if (speed > most) speed = most;
     return speeds;

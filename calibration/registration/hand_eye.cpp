@@ -2,13 +2,17 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include <glm/geometric.hpp>
 
 #include "calibration/registration/clock_offset.h"
-#include "calibration/registration/hand_eye_closed.h"
-#include "calibration/registration/hand_eye_fit.h"
+#include "calibration/registration/hand_eye_attempt.h"
 #include "calibration/registration/refusing.h"
+#include "calibration/registration/time_unit.h"
 #include "core/base/statistics.h"
 
 namespace lumorph {
@@ -20,14 +24,25 @@ using registration::number;
 
 using hand_eye::Deviation;
 using hand_eye::Fit;
+using hand_eye::Free;
 using hand_eye::kBodies;
+using hand_eye::Names;
 using hand_eye::Place;
 using hand_eye::Range;
 using hand_eye::Unknowns;
 
 constexpr double kLeastCorrelation = 0.5; ///< of angular speeds: below, they are of two bodies
 constexpr double kJump = 0.05;            ///< seconds by which a clock that runs evenly does not err
+constexpr double kSureOffset = 0.006;     ///< seconds: sigma of the offset in a part that tells it
 constexpr std::size_t kBlocks = 8;        ///< of the recording, for sigmas
+
+/// Few poses that stood still are no recording of a motion.
+std::string remedyForStations(const PoseTrack& a, const PoseTrack& b) {
+    constexpr std::size_t kMostStations = 60;
+    return std::min(a.poses.size(), b.poses.size()) > kMostStations
+               ? ""
+               : "; poses that stood still, a row of each file for each, are solved with --stations";
+}
 
 double turnBetween(const Pose& a, const Pose& b) { return angleOf(glm::conjugate(a.rotation) * b.rotation); }
 
@@ -64,30 +79,29 @@ void judge(HandEye& result, const Fit& fit, const Unknowns& solved, Place place,
                          "record again while both clocks run evenly, or cut the recording there");
 }
 
-/// A clock that jumped shows as another offset from there on.
+/// A clock that jumped shows as another offset from there on. A part in which the bodies rest tells none.
 void checkClocks(const Fit& fit, const PoseTrack& b, const Unknowns& solved, Place place) {
     std::vector<double> offsets;
+    std::vector<std::size_t> begins; // of the blocks that tell it
     const std::size_t poses = b.poses.size();
-    for (std::size_t block = 0; block < kBlocks; ++block)
-        offsets.push_back(fit.refined(solved, place, {block * poses / kBlocks, (block + 1) * poses / kBlocks}, {}, true)
-                              .clocks.seconds);
+    for (std::size_t block = 0; block < kBlocks; ++block) {
+        const Range range{block * poses / kBlocks, (block + 1) * poses / kBlocks};
+        if (fit.offsetSigma(solved, place, range) > kSureOffset) continue;
+        offsets.push_back(fit.refined(solved, place, range, {}, Free::offset).clocks.seconds);
+        begins.push_back(range.from);
+    }
     const double usual = median(offsets);
     std::vector<double> from;
     for (const double offset : offsets) from.push_back(std::abs(offset - usual));
     const double spread = std::max(0.004, median(from));
-    for (std::size_t cut = 1; cut < kBlocks; ++cut) {
+    for (std::size_t cut = 2; cut + 1 < offsets.size(); ++cut) {
         const std::vector<double> before(offsets.begin(), offsets.begin() + std::ptrdiff_t(cut));
         const std::vector<double> after(offsets.begin() + std::ptrdiff_t(cut), offsets.end());
         const auto [lowB, highB] = std::ranges::minmax(before);
         const auto [lowA, highA] = std::ranges::minmax(after);
         const double apart = std::max(lowA - highB, lowB - highA);
-        if (apart > std::max(kJump, 2.0 * std::max({highB - lowB, highA - lowA, spread})) && before.size() > 1 &&
-            after.size() > 1)
-            registration::refuse(
-                Cause::clockJumps, kBodies,
-                "their clocks differ by " + number(apart * 1000.0, 0) + " ms more or less from about " +
-                    number(b.poses[cut * poses / kBlocks].seconds - b.poses.front().seconds, 0) + " s on",
-                "record again while both clocks run evenly, or cut the recording there");
+        if (apart > std::max(kJump, 2.0 * std::max({highB - lowB, highA - lowA, spread})))
+            refuseJump(apart, b.poses[begins[cut]].seconds - b.poses.front().seconds);
     }
 }
 
@@ -133,54 +147,51 @@ void tellStrays(HandEye& result, const std::vector<Deviation>& deviations, const
                                "see that the tracker neither swaps bodies nor takes reflections for markers"});
 }
 
-HandEye solveSparse(const PoseTrack& a, const PoseTrack& b, const Progress& progress) {
+HandEye solveSparse(const PoseTrack& a, const PoseTrack& b, const Names& names, const Progress& progress,
+                    bool isReread = false) {
     const ClockOffset clocks = clockOffset(a, b, progress.part(0.0, 0.2));
     if (clocks.correlation < kLeastCorrelation)
         registration::refuse(
             Cause::clocksUnknown, kBodies,
             "their speeds of turning agree at no offset of the clocks (at best " + number(clocks.correlation, 2) + ")",
-            "record both at the same time, joined rigidly, and turn them now fast, now slowly, for 20 s or more");
-    progress.report(0.2, "joint");
-    Unknowns solved = hand_eye::closedForm(a, b, clocks);
-    const Fit fit(a, b, progress);
-    const Range all{0, b.poses.size()};
-    const auto as = [&](Place place) { return fit.refined(solved, place, all); };
-    const Unknowns byBody = as(Place::body);
-    progress.report(0.27, "joint");
-    const Unknowns byOrigin = as(Place::origin);
-    progress.report(0.33, "joint");
-    const auto likely = [&](const Unknowns& u, Place place) {
-        return hand_eye::Noise(fit.deviations(u), b, place).logarithm();
-    };
-    const Place place = likely(byBody, Place::body) <= likely(byOrigin, Place::origin) ? Place::body : Place::origin;
-    solved = place == Place::body ? byBody : byOrigin;
-
-    HandEye result;
-    result.bFromA = solved.bFromA;
-    result.worldBFromWorldA = solved.worldBFromWorldA;
-    result.timeOffset = solved.clocks.seconds;
-    result.clockDrift = solved.clocks.drift;
-    result.middle = solved.clocks.middle;
-    const std::vector<Deviation> deviations = fit.deviations(solved);
-    std::vector<double> turns, shifts;
-    for (const Deviation& d : deviations) {
-        turns.push_back(glm::length(d.turn));
-        shifts.push_back(glm::length(d.place));
+            "record both at the same time, joined rigidly, and turn them now fast, now slowly, for 20 s or more" +
+                remedyForStations(a, b));
+    const hand_eye::Read read =
+        hand_eye::readRecordings({a, b, clocks, false, names, isReread}, progress.part(0.2, 0.4));
+    if (read.other) {
+        HandEye result =
+            solveSparse(readAs(a, read.other->a), readAs(b, read.other->b), names, progress.part(0.4, 1.0), true);
+        const std::vector<Finding> warnings = hand_eye::warningsOf(*read.other, names);
+        result.warnings.insert(result.warnings.begin(), warnings.begin(), warnings.end());
+        return result;
     }
-    result.poses = deviations.size();
-    result.medianTurn = median(turns);
-    result.medianShift = median(shifts);
+    const hand_eye::Attempt& attempt = *read.attempt;
+    HandEye result = hand_eye::resultOf(attempt);
     if (result.medianTurn > 6.0 * kDegree || result.medianShift > 0.08) explainMisfit(result, a, b);
-    checkClocks(fit, b, solved, place);
+    const Fit fit(a, b, progress);
+    checkClocks(fit, b, attempt.solved, attempt.place);
+    result.warnings = hand_eye::warningsOf(attempt, names);
     if (clocks.runnerUp > 0.98)
         result.warnings.push_back({Cause::clocksUnknown,
                                    kBodies,
                                    {},
                                    "another offset of the clocks agrees nearly as well",
                                    "turn the bodies less regularly"});
-    tellStrays(result, deviations, b);
-    judge(result, fit, solved, place, b.poses.size(), progress);
+    tellStrays(result, attempt.deviations, b);
+    judge(result, fit, attempt.solved, attempt.place, b.poses.size(), progress);
     return result;
+}
+
+std::string recordingOf(const char* name) { return "the " + std::string(name) + " recording"; }
+
+PoseTrack knownFrames(const PoseTrack& other, PoseTrack frames, const std::string& name, const Progress& progress) {
+    auto seconds = inSecondsBy(other, std::move(frames), name, progress);
+    if (!seconds)
+        registration::refuse(Cause::timeUnit, name.c_str(),
+                             "its times are whole numbers that follow one another, as frames do; at no frame rate does "
+                             "it turn as the other does",
+                             "write seconds; record both at the same time");
+    return std::move(*seconds);
 }
 
 double rateOf(const PoseTrack& track) {
@@ -192,16 +203,24 @@ double rateOf(const PoseTrack& track) {
 
 } // namespace
 
-HandEye solveHandEye(const PoseTrack& a, const PoseTrack& b, const Progress& progress) {
-    for (const PoseTrack* track : {&a, &b})
+HandEye solveHandEye(const PoseTrack& first, const PoseTrack& second, const Progress& progress) {
+    const Names names;
+    for (const PoseTrack* track : {&first, &second})
         if (track->poses.size() < 20)
             registration::refuse(Cause::tooFewPoints, kBodies, "a recording has fewer than 20 poses",
-                                 "record both for 20 s or more");
+                                 "record both for 20 s or more" + remedyForStations(first, second));
+    PoseTrack a = inSeconds(first, recordingOf(names.a)), b = inSeconds(second, recordingOf(names.b));
+    if (countsFrames(a) && countsFrames(b))
+        registration::refuse(Cause::timeUnit, kBodies,
+                             "the times of both count frames: nothing tells how many a second",
+                             "divide them by the frame rate, so that they are seconds");
+    if (countsFrames(a)) a = knownFrames(b, std::move(a), recordingOf(names.a), progress.part(0.0, 0.2));
+    if (countsFrames(b)) b = knownFrames(a, std::move(b), recordingOf(names.b), progress.part(0.0, 0.2));
     HandEye result;
     if (rateOf(a) >= rateOf(b)) {
-        result = solveSparse(a, b, progress);
+        result = solveSparse(a, b, names, progress);
     } else { // the one with fewer is compared with the other, which is interpolated
-        result = solveSparse(b, a, progress);
+        result = solveSparse(b, a, {names.b, names.a}, progress);
         result.bFromA = inverseOf(result.bFromA);
         result.worldBFromWorldA = inverseOf(result.worldBFromWorldA);
         result.middle -= result.timeOffset;

@@ -37,9 +37,15 @@ struct HandEye {
 /// motions (as Park and Martin 1994), then all together, robust, by the noise that the recordings themselves show.
 /// Sigmas come from leaving out one eighth of the recording after another, so that noise which lasts counts.
 ///
+/// Where they fit badly, other readings are tried. With a warning it is solved by: quaternions with w first
+/// (`quaternion_order`); times in milli-, micro- or nanoseconds, or in frames where the other has seconds
+/// (`time_unit`); a body that turned about its own origin, which leaves its unit and handedness unknown
+/// (`turns_in_place`). One recording that has the world in the body's frame is refused (`inverted`): which of the two
+/// it is makes no difference to the fit.
+///
 /// Throws CaptureRefused: `clocks_unknown` (nothing correlates), `motion_degenerate` with the motion that is missing,
-/// `mirrored` (one of the worlds is left-handed), `wrong_units`, `model_does_not_fit` (they are not joined, or a
-/// tracker swapped bodies); Cancelled.
+/// `mirrored` (one of the worlds is left-handed), `wrong_units` (near the ratio of two units), `inverted`, `time_unit`
+/// (both count frames), `model_does_not_fit` (they are not joined, or a tracker swapped bodies); Cancelled.
 [[nodiscard]] HandEye solveHandEye(const PoseTrack& a, const PoseTrack& b, const Progress& progress = {});
 
 } // namespace lumorph

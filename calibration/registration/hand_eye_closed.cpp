@@ -1,7 +1,9 @@
 #include "calibration/registration/hand_eye_closed.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <iterator>
 
 #include <Eigen/Dense>
 #include <glm/geometric.hpp>
@@ -21,45 +23,37 @@ constexpr double kLeastTurned = 8.0 * kDegree; ///< spread of relative turns abo
 constexpr double kLeastAcross = 5.0 * kDegree; ///< and about the second
 constexpr std::size_t kMostPairs = 6000;
 
-/// Poses of both at the same moments.
-struct Both {
-    Pose a, b;
-};
-
-std::vector<Both> together(const PoseTrack& a, const PoseTrack& b, const ClockOffset& clocks) {
-    std::vector<Both> both;
-    for (const TimedPose& pose : b.poses)
-        if (const auto at = poseAt(a, clocks.toA(pose.seconds))) both.push_back({*at, pose.pose});
-    return both;
-}
-
 /// Relative motions of both between two moments: X A = B X.
 struct Motion {
     Pose a, b;
     glm::dvec3 turnA{0.0}, turnB{0.0};
 };
 
-/// Pairs of moments at many distances in time, which turn enough to tell something.
-std::vector<Motion> motionsOf(const std::vector<Both>& both) {
+/// All pairs of few moments; of many pairs at many distances in time.
+std::vector<Motion> motionsOf(std::span<const Both> both) {
     std::vector<Motion> motions;
     const std::size_t n = both.size();
+    const auto add = [&](std::size_t i, std::size_t j) {
+        Motion m;
+        m.a = inverseOf(both[i].a) * both[j].a;
+        m.b = inverseOf(both[i].b) * both[j].b;
+        m.turnA = turnOf(m.a.rotation);
+        m.turnB = turnOf(m.b.rotation);
+        if (glm::length(m.turnA) < 3.0) motions.push_back(m); // near a half turn the axis may be either
+    };
+    const bool isFew = n * n / 2 < kMostPairs;
     const std::size_t stride = std::max<std::size_t>(1, n * 10 / kMostPairs);
-    for (std::size_t i = 0; i < n; i += stride)
-        for (std::size_t k = 1; k <= 10; ++k) {
-            const std::size_t j = i + std::max<std::size_t>(k, k * k * n / 200);
+    for (std::size_t i = 0; i < n; i += isFew ? 1 : stride)
+        for (std::size_t k = 1; isFew ? i + k < n : k <= 10; ++k) {
+            const std::size_t j = i + (isFew ? k : std::max<std::size_t>(k, k * k * n / 200));
             if (j >= n) break;
-            Motion m;
-            m.a = inverseOf(both[i].a) * both[j].a;
-            m.b = inverseOf(both[i].b) * both[j].b;
-            m.turnA = turnOf(m.a.rotation);
-            m.turnB = turnOf(m.b.rotation);
-            if (glm::length(m.turnA) < 3.0) motions.push_back(m); // near a half turn the axis may be either
+            add(i, j);
         }
     return motions;
 }
 
 /// Turning about one axis alone tells neither the other angle nor the place along it.
-void checkTurns(const std::vector<Motion>& motions, const std::vector<Both>& both) {
+void checkTurns(const std::vector<Motion>& motions, std::span<const Both> both) {
     Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
     for (const Motion& m : motions) spread += eigen(m.turnA) * eigen(m.turnA).transpose();
     spread /= std::max<double>(1.0, double(motions.size()));
@@ -123,13 +117,13 @@ glm::dquat rotationOf(std::vector<Motion>& motions) {
 }
 
 /// The place of A in B, and by how much A's unit of length is too long: (R_B - 1) t - s R t_A = -t_B, least squares
-/// with weights that spare what fits badly.
+/// with weights that spare what fits badly; `unit` keeps s = 1.
 struct PlaceFit {
     glm::dvec3 place{0.0};
     double scale = 1.0, scaleSigma = 0.0;
     double left = 0.0; ///< median of what is left, metres
 };
-PlaceFit placeOf(const std::vector<Motion>& motions, const glm::dquat& bFromA) {
+PlaceFit placeOf(const std::vector<Motion>& motions, const glm::dquat& bFromA, bool unit = false) {
     PlaceFit fit;
     double usual = 1e9;
     for (int round = 0; round < 6; ++round) {
@@ -150,7 +144,13 @@ PlaceFit placeOf(const std::vector<Motion>& motions, const glm::dquat& bFromA) {
             normal += weight * rows.transpose() * rows;
             right -= weight * rows.transpose() * eigen(m.b.position);
         }
-        solution = normal.ldlt().solve(right);
+        if (unit) {
+            solution.head<3>() =
+                normal.topLeftCorner<3, 3>().ldlt().solve(right.head<3>() - normal.topRightCorner<3, 1>());
+            solution[3] = 1.0;
+        } else {
+            solution = normal.ldlt().solve(right);
+        }
         std::vector<double> left;
         for (const Motion& m : motions) left.push_back((rowsOf(m) * solution + eigen(m.b.position)).norm());
         usual = std::max(1e-6, median(left));
@@ -161,7 +161,7 @@ PlaceFit placeOf(const std::vector<Motion>& motions, const glm::dquat& bFromA) {
     return fit;
 }
 
-Pose worldsOf(const std::vector<Both>& both, const Pose& bFromA) {
+Pose worldsOf(std::span<const Both> both, const Pose& bFromA) {
     std::vector<double> x, y, z;
     Eigen::Matrix4d sum = Eigen::Matrix4d::Zero();
     for (const Both& at : both) {
@@ -177,29 +177,93 @@ Pose worldsOf(const std::vector<Both>& both, const Pose& bFromA) {
     return {{median(x), median(y), median(z)}, {q[0], q[1], q[2], q[3]}};
 }
 
-} // namespace
+/// How far a body's origin moves about in its world: half of the time farther than this from its middle, metres.
+double rangeOf(std::span<const Both> both, Pose Both::*body) {
+    std::array<std::vector<double>, 3> along;
+    for (const Both& at : both)
+        for (int axis = 0; axis < 3; ++axis) along.at(std::size_t(axis)).push_back((at.*body).position[axis]);
+    const glm::dvec3 middle(median(along[0]), median(along[1]), median(along[2]));
+    std::vector<double> from;
+    for (const Both& at : both) from.push_back(glm::distance((at.*body).position, middle));
+    return median(std::move(from));
+}
 
-Unknowns closedForm(const PoseTrack& a, const PoseTrack& b, const ClockOffset& clocks) {
-    const std::vector<Both> both = together(a, b, clocks);
-    if (both.size() < 20)
-        registration::refuse(Cause::tooFewPoints, kBodies, "they share fewer than 20 moments",
-                             "record both at the same time, for 20 s or more");
-    const std::vector<Motion> all = motionsOf(both);
-    checkTurns(all, both);
-    std::vector<Motion> motions = agreeing(all);
-    const glm::dquat rotation = rotationOf(motions);
-    const PlaceFit place = placeOf(motions, rotation);
+/// Units whose metres are so many times another's.
+struct Ratio {
+    double value;
+    const char* of;
+};
+constexpr std::array kRatios{
+    Ratio{10.0, "as millimetres are to centimetres"},
+    Ratio{100.0, "as centimetres are to metres"},
+    Ratio{1000.0, "as millimetres are to metres"},
+    Ratio{1.0 / 0.3048, "as feet are to metres"},
+    Ratio{1.0 / 0.0254, "as inches are to metres"},
+    Ratio{1.0 / 0.9144, "as yards are to metres"},
+    Ratio{30.48, "as centimetres are to feet"},
+    Ratio{304.8, "as millimetres are to feet"},
+    Ratio{2.54, "as centimetres are to inches"},
+    Ratio{25.4, "as millimetres are to inches"},
+    Ratio{12.0, "as inches are to feet"},
+    Ratio{1e6, "as micrometres are to metres"},
+};
+constexpr double kNearRatio = 0.04;
+constexpr double kOneUnit = 0.1; ///< of 1: noise of short motions
+
+/// Places that fit well, but at another scale than 1.
+[[noreturn]] void refuseScale(const PlaceFit& place, const Names& names) {
+    if (place.scale <= 0.0)
+        registration::refuse(Cause::modelDoesNotFit, kBodies, "they turn alike, but their places fit at no scale",
+                             "record two bodies that are joined rigidly");
+    const bool isLarger = std::abs(place.scale) > 1.0; // the second's
+    const double ratio = isLarger ? place.scale : 1.0 / place.scale;
+    const std::string larger = isLarger ? names.b : names.a, smaller = isLarger ? names.a : names.b;
+    const std::string why =
+        "the " + larger + "'s places are " + number(ratio, 2) + " times as large as the " + smaller + "'s";
+    const double tolerance = std::max(kNearRatio, std::min(0.1, 3.0 * place.scaleSigma / std::abs(place.scale)));
+    for (const Ratio& known : kRatios)
+        if (std::abs(ratio / known.value - 1.0) < tolerance)
+            registration::refuse(Cause::wrongUnits, kBodies, why + ", " + known.of, "write both in metres");
+    registration::refuse(Cause::modelDoesNotFit, kBodies, why + ", which is the ratio of no two units",
+                         "look what gives each its scale: the side of a board's squares, the distance of markers, or a "
+                         "camera alone, which knows none");
+}
+
+/// Whether places tell a scale, and whether that is 1. Where a body turns about its own origin, or the places fit at no
+/// scale, they tell none.
+void checkScale(const PlaceFit& place, const Names& names, ClosedForm& found, std::span<const Both> both) {
+    constexpr double kTells = 5.0; // times what is left
+    found.aInPlace = rangeOf(both, &Both::a) * std::abs(place.scale) <= kTells * place.left;
+    found.bInPlace = rangeOf(both, &Both::b) <= kTells * place.left;
+    if (found.aInPlace || found.bInPlace) return;
     if (place.scale < -3.0 * place.scaleSigma && place.scale < -0.5)
         registration::refuse(Cause::mirrored, kBodies,
                              "they fit only as mirror images: one of the two worlds is left-handed",
                              "turn one of them into right-handed coordinates: negate z, qx and qy");
-    if (std::abs(place.scale - 1.0) > std::max(0.1, 6.0 * place.scaleSigma))
-        registration::refuse(Cause::wrongUnits, kBodies,
-                             "the second's places are " + number(place.scale, place.scale < 0.1 ? 4 : 2) +
-                                 " times as large as the first's",
-                             "write both in metres");
-    const Pose bFromA{place.place, rotation};
-    return {bFromA, worldsOf(both, bFromA), clocks};
+    if (std::abs(place.scale - 1.0) > std::max(kOneUnit, 6.0 * place.scaleSigma)) refuseScale(place, names);
+}
+
+} // namespace
+
+std::vector<Both> together(const PoseTrack& a, const PoseTrack& b, const ClockOffset& clocks) {
+    std::vector<Both> both;
+    for (const TimedPose& pose : b.poses)
+        if (const auto at = poseAt(a, clocks.toA(pose.seconds))) both.push_back({*at, pose.pose});
+    return both;
+}
+
+ClosedForm closedForm(std::span<const Both> both, const Names& names) {
+    const std::vector<Motion> all = motionsOf(both);
+    checkTurns(all, both);
+    std::vector<Motion> motions = agreeing(all);
+    const glm::dquat rotation = rotationOf(motions);
+    PlaceFit place = placeOf(motions, rotation);
+    ClosedForm found;
+    checkScale(place, names, found, both);
+    if (found.aInPlace || found.bInPlace) place = placeOf(motions, rotation, true);
+    found.bFromA = {place.place, rotation};
+    found.worldBFromWorldA = worldsOf(both, found.bFromA);
+    return found;
 }
 
 } // namespace lumorph::hand_eye

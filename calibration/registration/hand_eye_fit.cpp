@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include <Eigen/Cholesky>
 #include <glm/geometric.hpp>
@@ -16,6 +17,7 @@ constexpr int kUnknowns = 14;
 constexpr int kOffset = 12, kDrift = 13; // of the unknowns; the drift as what it makes of the offset until the end
 constexpr double kUsualDrift = 1e-4;     // of a clock
 constexpr int kRounds = 12;
+constexpr std::size_t kLeastOfRing = 10;                // poses
 constexpr double kMedianOfNorm = 1.538;                 ///< of a normal vector in space with sigma 1
 constexpr double kLeastTurn = 1e-6, kLeastPlace = 1e-7; ///< noise below which numbers end
 constexpr double kCauchy = 2.4;                         ///< sigmas of a vector's part
@@ -49,8 +51,9 @@ Noise::Noise(std::span<const Deviation> deviations, const PoseTrack& b, Place pl
     for (const Deviation& d : deviations) byDistance.push_back(&d);
     const auto distance = [&](const Deviation* d) { return distanceOf(b.poses[d->pose]); };
     std::ranges::sort(byDistance, {}, distance);
-    for (std::size_t ring = 0; ring < kRings; ++ring) {
-        const std::size_t from = ring * byDistance.size() / kRings, to = (ring + 1) * byDistance.size() / kRings;
+    rings_ = std::clamp<std::size_t>(byDistance.size() / kLeastOfRing, 1, kRings);
+    for (std::size_t ring = 0; ring < rings_; ++ring) {
+        const std::size_t from = ring * byDistance.size() / rings_, to = (ring + 1) * byDistance.size() / rings_;
         std::vector<double> turns, places;
         for (std::size_t i = from; i < to; ++i) {
             turns.push_back(glm::length(byDistance[i]->turn));
@@ -59,13 +62,13 @@ Noise::Noise(std::span<const Deviation> deviations, const PoseTrack& b, Place pl
         farthest_[ring] = to > from ? distance(byDistance[to - 1]) : 0.0;
         turns_[ring] = std::max(kLeastTurn, median(turns) / kMedianOfNorm);
         places_[ring] = std::max(kLeastPlace, median(places) / kMedianOfNorm);
-        logarithm_ += (std::log(turns_[ring]) + std::log(places_[ring])) / double(kRings);
+        logarithm_ += (std::log(turns_[ring]) + std::log(places_[ring])) / double(rings_);
     }
 }
 
 double Noise::at(const std::array<double, kRings>& of, double distance) const {
     std::size_t ring = 0;
-    while (ring + 1 < kRings && distance > farthest_[ring]) ++ring;
+    while (ring + 1 < rings_ && distance > farthest_[ring]) ++ring;
     return of[ring];
 }
 
@@ -92,13 +95,39 @@ std::vector<Deviation> Fit::deviations(const Unknowns& unknowns) const {
     return all;
 }
 
-Unknowns Fit::refined(Unknowns u, Place place, Range use, Range leave, bool offsetAlone) const {
+double Fit::offsetSigma(const Unknowns& unknowns, Place place, Range use) const {
+    constexpr double kStep = 0.04, kAlike = 5.0; // seconds; neighbouring poses err alike
+    // What noise alone makes of both squares, where it is of A: of two poses, along three axes.
+    constexpr double kByNoise = 2.0 * 2.0 * 3.0 / (4.0 * kStep * kStep);
+    std::vector<Deviation> all = deviations(unknowns);
+    std::erase_if(all, [&](const Deviation& d) { return !use.has(d.pose); });
+    if (all.empty()) return std::numeric_limits<double>::infinity();
+    const Noise noise(all, b_, place);
+    Unknowns more = unknowns, less = unknowns;
+    more.clocks.seconds += kStep;
+    less.clocks.seconds -= kStep;
+    double sure = 0.0;
+    for (const Deviation& d : all) {
+        const auto up = deviation(more, d.pose), down = deviation(less, d.pose);
+        if (!up || !down) continue;
+        const double distance = distanceOf(b_.poses[d.pose]);
+        const double turn = glm::length(up->turn - down->turn) / (2.0 * kStep * noise.turn(distance));
+        const double moves =
+            glm::length(placeOf(*up, place) - placeOf(*down, place)) / (2.0 * kStep * noise.place(distance));
+        sure += turn * turn + moves * moves - kByNoise;
+    }
+    return std::sqrt(kAlike / std::max(sure, 1e-12));
+}
+
+Unknowns Fit::refined(Unknowns u, Place place, Range use, Range leave, Free free) const {
     constexpr double kStep = 1e-6; // of a central difference: radians, metres, seconds
+    const bool offsetAlone = free == Free::offset;
+    const std::size_t least = free == Free::poses ? 4 : 10;
     for (int round = 0; round < kRounds; ++round) {
         progress_.throwIfCancelled();
         std::vector<Deviation> all = deviations(u);
         std::erase_if(all, [&](const Deviation& d) { return !use.has(d.pose) || leave.has(d.pose); });
-        if (all.size() < 10) break;
+        if (all.size() < least) break;
         const Noise noise(all, b_, place);
         std::array<Unknowns, kUnknowns> more, less;
         for (int k = 0; k < kUnknowns; ++k) {
@@ -110,7 +139,8 @@ Unknowns Fit::refined(Unknowns u, Place place, Range use, Range leave, bool offs
         for (const Deviation& d : all) {
             Slopes slopes = Slopes::Zero();
             bool whole = true;
-            const int first = offsetAlone ? kOffset : 0, last = offsetAlone ? kOffset : kDrift;
+            const int first = offsetAlone ? kOffset : 0;
+            const int last = free == Free::all ? kDrift : offsetAlone ? kOffset : kOffset - 1;
             const auto a = poseAt(a_, u.clocks.toA(b_.poses[d.pose].seconds));
             // Only the clocks change which pose of A it is.
             const auto at = [&](const Unknowns& by, int k) {
@@ -137,7 +167,7 @@ Unknowns Fit::refined(Unknowns u, Place place, Range use, Range leave, bool offs
             right -= slopes.transpose() * weights.asDiagonal() * error;
         }
         // A short recording does not tell the drift from noise.
-        if (!offsetAlone) {
+        if (free == Free::all) {
             const double usual = kUsualDrift * halfSpan_;
             normal(kDrift, kDrift) += 1.0 / (usual * usual);
             right[kDrift] -= u.clocks.drift * halfSpan_ / (usual * usual);

@@ -41,6 +41,7 @@ public:
 private:
     static constexpr std::size_t kRings = 6;
     [[nodiscard]] double at(const std::array<double, kRings>& of, double distance) const;
+    std::size_t rings_ = kRings; ///< fewer where there are few poses
     std::array<double, kRings> farthest_{}, turns_{}, places_{};
     double logarithm_ = 0.0;
 };
@@ -49,6 +50,13 @@ private:
 struct Range {
     std::size_t from = 0, to = 0;
     [[nodiscard]] bool has(std::size_t pose) const noexcept { return pose >= from && pose < to; }
+};
+
+/// What a refinement changes.
+enum class Free {
+    all,
+    offset, ///< of the clocks, alone
+    poses,  ///< not the clocks, which are known
 };
 
 /// A body A that is interpolated, and B whose poses are compared with it; both outlive this.
@@ -60,10 +68,13 @@ public:
     /// Of all poses of B that A saw, too.
     [[nodiscard]] std::vector<Deviation> deviations(const Unknowns& unknowns) const;
 
-    /// Gauss-Newton with weights by noise and Cauchy's function, over the poses in `use`, less those in `leave`;
-    /// `offsetAlone` keeps all but the time offset. Throws Cancelled.
+    /// Gauss-Newton with weights by noise and Cauchy's function, over the poses in `use`, less those in `leave`. Throws
+    /// Cancelled.
     [[nodiscard]] Unknowns refined(Unknowns start, Place place, Range use, Range leave = {},
-                                   bool offsetAlone = false) const;
+                                   Free free = Free::all) const;
+
+    /// How well the poses in `use` tell the time offset, seconds: infinite where nothing moves.
+    [[nodiscard]] double offsetSigma(const Unknowns& unknowns, Place place, Range use) const;
 
 private:
     [[nodiscard]] std::optional<Deviation> deviation(const Unknowns& unknowns, std::size_t pose) const;

@@ -11,6 +11,7 @@
 #include "calibration/registration/landmark_match.h"
 #include "calibration/registration/refusing.h"
 #include "calibration/registration/steady_tip.h"
+#include "calibration/registration/time_unit.h"
 
 namespace lumorph {
 
@@ -262,8 +263,11 @@ void warnOfTip(LandmarkFit& result, const std::vector<Touched>& touched, const L
 
 } // namespace
 
-LandmarkFit fitLandmarks(const PoseTrack& pointer, const std::optional<PoseTrack>& reference,
+LandmarkFit fitLandmarks(const PoseTrack& recordedPointer, const std::optional<PoseTrack>& recordedReference,
                          const std::vector<NamedPoint>& model, const glm::dvec3& tip) {
+    const PoseTrack pointer = inKnownSeconds(recordedPointer, "pointer");
+    const std::optional<PoseTrack> reference =
+        recordedReference ? std::optional(inKnownSeconds(*recordedReference, "reference")) : std::nullopt;
     if (model.size() < 3)
         registration::refuse(Cause::tooFewPoints, kTouches, "the model has fewer than three points",
                              "give it four or more");

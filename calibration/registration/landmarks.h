@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "calibration/registration/pose_file.h"
 #include "calibration/registration/pose_track.h"
 
 namespace lumorph {
@@ -36,7 +37,8 @@ struct LandmarkFit {
 /// several sides, from the order of its points. Dwells elsewhere count for nothing.
 ///
 /// Throws CaptureRefused, where no choice of points fits: `tip_wrong` with the tip that would, `wrong_units`,
-/// `mirrored`, `too_few_points`, `points_degenerate`, else `model_does_not_fit` (another model, another order).
+/// `mirrored`, `too_few_points`, `points_degenerate`, `time_unit` (times that count frames), else `model_does_not_fit`
+/// (another model, another order).
 [[nodiscard]] LandmarkFit fitLandmarks(const PoseTrack& pointer, const std::optional<PoseTrack>& reference,
                                        const std::vector<NamedPoint>& model, const glm::dvec3& tip);
 

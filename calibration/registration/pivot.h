@@ -9,11 +9,11 @@ namespace lumorph {
 /// The tip of a pointer, from swinging it about the tip while that rests in a dimple.
 struct Pivot {
     glm::dvec3 tip{0.0};           ///< in the pointer's frame, metres
-    glm::dvec3 dimple{0.0};        ///< in the world
+    glm::dvec3 dimple{0.0};        ///< in the world; of one that slid, where it was at the end
     double rms = 0.0;              ///< metres that the tip strays from the dimple, of the poses that count
     glm::dvec3 tipSigma{0.0};      ///< metres
     std::size_t poses = 0;         ///< that count
-    std::vector<Finding> warnings; ///< swings during which the tip slipped, by their time
+    std::vector<Finding> warnings; ///< swings during which the tip slipped, by their time; a dimple that slid
 };
 
 /// Least squares over R tip + t = dimple, poses that stray left out. Throws CaptureRefused: `motion_degenerate` with

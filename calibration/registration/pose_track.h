@@ -1,8 +1,6 @@
 #pragma once
 
 #include <optional>
-#include <string>
-#include <string_view>
 #include <vector>
 
 #include "calibration/decode/refusal.h"
@@ -18,24 +16,17 @@ struct TimedPose {
 /// Poses of one body in one world by one clock, each later than the one before.
 struct PoseTrack {
     std::vector<TimedPose> poses;
-    std::vector<Finding> warnings; ///< rows that were left out, and why
+    std::vector<Finding> warnings; ///< rows that were left out or moved, other units; and why
 };
 
-/// Reads rows `time,x,y,z,qx,qy,qz,qw` (seconds, metres); `#` begins a comment, blanks may stand anywhere, also in
-/// place of the commas. A row with
-/// the time of the one before is left out with a warning. Throws DataError with the line for a row that is no pose (not
-/// eight finite numbers, a quaternion whose length is not 1 within 2 %), CaptureRefused for a clock that goes back,
-/// for fewer than two poses and for places farther than 200 m, which are millimetres or centimetres. `name` is the
-/// file's, for messages.
-[[nodiscard]] PoseTrack parsePoseTrack(std::string_view text, const std::string& name);
-
-/// Points `name,x,y,z`, metres.
-struct NamedPoint {
-    std::string name;
-    glm::dvec3 place{0.0};
+/// How a recording was written, where it was not as we write: each pose `w, x, y, z`, or the world in the body's frame.
+struct PoseReading {
+    bool wFirst = false, inverted = false;
+    bool operator==(const PoseReading&) const = default;
 };
-/// Reads such rows as parsePoseTrack does. Throws DataError with the line; also for two points of one name.
-[[nodiscard]] std::vector<NamedPoint> parseNamedPoints(std::string_view text, const std::string& name);
+/// The pose as it would have been read that way.
+[[nodiscard]] Pose readAs(const Pose& pose, PoseReading reading);
+[[nodiscard]] PoseTrack readAs(PoseTrack track, PoseReading reading);
 
 /// The pose at a time, between the two around it: straight, and by the shortest turn. Nothing before the first, after
 /// the last, and in a gap longer than `longestGap` seconds.

@@ -3,10 +3,14 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
+#include <numeric>
+#include <vector>
 
 #include <glm/geometric.hpp>
 
 #include "calibration/registration/refusing.h"
+#include "calibration/registration/time_unit.h"
 #include "core/base/statistics.h"
 
 namespace lumorph {
@@ -20,10 +24,14 @@ constexpr double kFarthestSeen = 200.0; ///< metres
 constexpr double kLongestGap = 0.35;    ///< seconds, as poseAt has it
 constexpr double kMostAhead = 5.0;      ///< seconds: no body is lost for so long and found where it was
 constexpr double kNeighbours = 0.1;     ///< seconds between poses that may be compared
-constexpr double kFastest = 8.0;        ///< metres a second; hands are slower
+constexpr double kFastestBody = 8.0;    ///< metres a second; hands are slower
 constexpr double kJumpAside = 0.08;     ///< metres, at least
 constexpr double kJumpRound = 45.0 * kDegree;
 constexpr std::size_t kGlitch = 2; ///< poses of somewhere else that may be left out
+constexpr double kLate = 0.2;      ///< seconds that a row may come behind another, of programs that share a file
+constexpr double kSetBack = 0.05;  ///< seconds that a clock that was set back spoils little
+constexpr std::size_t kOften = 5;  ///< runs of late rows: of a second program, whose clock is another
+constexpr double kLatest = 1.0;    ///< seconds by which that clock is behind
 
 bool isSound(const TimedPose& at) {
     const Pose& p = at.pose;
@@ -35,7 +43,7 @@ bool isSound(const TimedPose& at) {
 bool jumps(const TimedPose& from, const TimedPose& to) {
     const double passed = to.seconds - from.seconds;
     if (passed > kNeighbours) return false;
-    return glm::distance(from.pose.position, to.pose.position) > std::max(kJumpAside, kFastest * passed) ||
+    return glm::distance(from.pose.position, to.pose.position) > std::max(kJumpAside, kFastestBody * passed) ||
            angleOf(glm::conjugate(from.pose.rotation) * to.pose.rotation) > kJumpRound;
 }
 
@@ -54,26 +62,67 @@ void checkNumbers(const PoseTrack& track, const std::string& name) {
     }
 }
 
-/// In order and each once.
-PoseTrack inOrder(const PoseTrack& track, const std::string& name) {
+/// How far two poses of a body a hand's breadth wide are apart, metres.
+double apart(const Pose& a, const Pose& b) {
+    constexpr double kReach = 0.1;
+    return glm::distance(a.position, b.position) + kReach * angleOf(glm::conjugate(a.rotation) * b.rotation);
+}
+
+/// Rows whose time is before that of one written earlier.
+struct LateRows {
+    std::vector<std::size_t> rows;
+    std::size_t runs = 0; ///< of them that follow one another
+    double deepest = 0.0; ///< seconds that one of them goes back
+    double beside = 0.0;  ///< metres between a late pose and where the others have the body at its time; median
+    double moved = 0.0;   ///< metres that the body moved between that time and the row before; median
+    /// They are of the times that they bear, as of two senders that share a file; not of a clock that was set back.
+    [[nodiscard]] bool fitIn() const { return moved > 0.005 && beside < 0.3 * moved; }
+    [[nodiscard]] bool fitInNot() const { return moved > 0.01 && beside > 0.6 * moved; }
+};
+
+LateRows lateRowsOf(const PoseTrack& track) {
+    LateRows late;
+    PoseTrack others;
+    for (std::size_t i = 0; i < track.poses.size(); ++i) {
+        const TimedPose& at = track.poses[i];
+        if (others.poses.empty() || at.seconds > others.poses.back().seconds)
+            others.poses.push_back(at);
+        else if (at.seconds < others.poses.back().seconds) {
+            late.runs += late.rows.empty() || late.rows.back() + 1 < i ? 1 : 0;
+            late.rows.push_back(i);
+            late.deepest = std::max(late.deepest, others.poses.back().seconds - at.seconds);
+        }
+    }
+    std::vector<double> beside, moved;
+    for (const std::size_t i : late.rows) {
+        const auto then = poseAt(others, track.poses[i].seconds, std::numeric_limits<double>::infinity());
+        if (!then) continue;
+        beside.push_back(apart(*then, track.poses[i].pose));
+        moved.push_back(apart(*then, track.poses[i - 1].pose));
+    }
+    late.beside = median(std::move(beside));
+    late.moved = median(std::move(moved));
+    return late;
+}
+
+PoseTrack withoutDoubles(const PoseTrack& track, const std::string& name, std::span<const std::string> places,
+                         const std::vector<std::size_t>& order) {
     PoseTrack kept{{}, track.warnings};
-    std::size_t doubled = 0;
-    for (const TimedPose& at : track.poses) {
-        if (!kept.poses.empty() && at.seconds < kept.poses.back().seconds)
-            registration::refuse(Cause::clockJumps, name.c_str(),
-                                 "its clock goes back by " + number(kept.poses.back().seconds - at.seconds, 2) + " s",
-                                 "record again while the tracker's clock runs evenly");
-        if (!kept.poses.empty() && at.seconds == kept.poses.back().seconds)
-            ++doubled;
-        else
+    std::size_t doubled = 0, first = 0;
+    for (const std::size_t row : order) {
+        const TimedPose& at = track.poses[row];
+        if (kept.poses.empty() || at.seconds != kept.poses.back().seconds)
             kept.poses.push_back(at);
+        else if (doubled++ == 0)
+            first = row;
     }
     if (doubled > 0)
         kept.warnings.push_back({Cause::doubledRows,
                                  name,
                                  {},
-                                 std::to_string(doubled) + " poses have the time of the pose before",
-                                 "they are left out; record each pose once"});
+                                 std::to_string(doubled) + " rows have the time of another, first " +
+                                     (places.empty() ? "pose " + std::to_string(first + 1) : places[first]),
+                                 "they are left out; record each pose once, with its time to the millisecond"});
     return kept;
 }
 
@@ -170,9 +219,37 @@ const std::array kFaults{
 
 } // namespace
 
+PoseTrack inTimeOrder(const PoseTrack& track, const std::string& name, std::span<const std::string> places) {
+    std::vector<std::size_t> order(track.poses.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    const LateRows late = lateRowsOf(track);
+    if (late.rows.empty()) return withoutDoubles(track, name, places, order);
+    const std::size_t first = late.rows.front();
+    const double back = late.deepest * likelyTimeUnit(track).seconds;
+    const bool isOften = late.runs >= kOften && back < kLatest;
+    if (late.fitInNot() ? back > kSetBack && !isOften : back > kLate && !late.fitIn())
+        registration::refuse(Cause::clockJumps, places.empty() ? name.c_str() : places[first].c_str(),
+                             "its clock goes back by " + number(back, 2) + " s",
+                             "record again while the tracker's clock runs evenly, or cut the recording there");
+    std::string why = std::to_string(late.rows.size()) + " rows stand behind later ones, by up to " +
+                      number(1000.0 * back, 0) + " ms, first " +
+                      (places.empty() ? "pose " + std::to_string(first + 1) : places[first]);
+    std::string remedy = "they were sorted by their times; let one program write the recording";
+    if (late.fitInNot()) {
+        why += "; they are " + number(1000.0 * late.beside, 0) +
+               " mm from where the others have the body then, as by another clock";
+        remedy = "they are left out; let one program write the recording";
+        std::erase_if(order, [&](std::size_t row) { return std::ranges::binary_search(late.rows, row); });
+    }
+    std::ranges::stable_sort(order, {}, [&](std::size_t row) { return track.poses[row].seconds; });
+    PoseTrack sorted = withoutDoubles(track, name, places, order);
+    sorted.warnings.push_back({Cause::rowsOutOfOrder, name, {}, std::move(why), std::move(remedy)});
+    return sorted;
+}
+
 PoseTrack soundTrack(const PoseTrack& track, const std::string& name) {
     checkNumbers(track, name);
-    PoseTrack sound = inOnePlace(inOrder(track, name), name);
+    PoseTrack sound = inOnePlace(inTimeOrder(track, name), name);
     checkGaps(sound, name);
     return sound;
 }

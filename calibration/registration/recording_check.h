@@ -8,11 +8,18 @@
 
 namespace lumorph {
 
-/// The recording as it may be used: rows with the time of the row before, and one or two poses of somewhere else, left
-/// out with a warning each. Throws CaptureRefused: `not_a_number`, `clock_jumps` (back, or ahead at once),
-/// `tracker_lost` (nothing for longer than a third of a second), `body_swapped` (from one pose to the next it is
-/// somewhere else), `wrong_units` (farther than any tracker sees), `too_few_points` (none). `name` is the body's, for
-/// messages.
+/// In the order of times, and each time once: rows that came late, up to 0.2 s, or by more where it is seen that they
+/// fit in, are sorted, and those of a second clock that is behind left out, with a warning `rows_out_of_order`; of rows
+/// of one time the first is kept, with a warning `doubled_rows`. Throws CaptureRefused, `clock_jumps`, where the clock
+/// went back instead. `places` names rows for messages; where it is empty, they count from 1.
+[[nodiscard]] PoseTrack inTimeOrder(const PoseTrack& track, const std::string& name,
+                                    std::span<const std::string> places = {});
+
+/// The recording as it may be used: in the order of its times (inTimeOrder); rows with the time of the row before, and
+/// one or two poses of somewhere else, left out with a warning each. Throws CaptureRefused: `not_a_number`,
+/// `clock_jumps` (back, or ahead at once), `tracker_lost` (nothing for longer than a third of a second), `body_swapped`
+/// (from one pose to the next it is somewhere else), `wrong_units` (farther than any tracker sees), `too_few_points`
+/// (none). `name` is the body's, for messages.
 [[nodiscard]] PoseTrack soundTrack(const PoseTrack& track, const std::string& name);
 
 /// A fault that all poses of a capture share, and how it is undone.

@@ -134,14 +134,17 @@ template <typename AnyRows> std::vector<PointError> errorsOf(const AnyRows& fres
 
 /// Where the tip should be is unknown at a fresh dimple; that it is one place is not. Of n touches the mean takes part
 /// of each error, which the factor gives back.
-std::vector<PointError> dimpleErrors(const PointerCapture& capture, const glm::dvec3& tip) {
+std::vector<PointError> dimpleErrors(const PointerCapture& capture, const glm::dvec3& tip,
+                                     std::vector<Finding>& warnings) {
     std::vector<PointError> errors;
     for (const std::vector<Touch>& dimple : capture.fresh) {
         if (dimple.size() < 2) continue; // alone it tells nothing
         std::vector<glm::dvec3> places;
         glm::dvec3 mean(0.0);
         for (const Touch& touch : dimple) {
-            places.push_back(restOf(touch, tip).pointer * tip);
+            const Rest rest = restOf(touch, tip);
+            warnings.insert(warnings.end(), rest.warnings.begin(), rest.warnings.end());
+            places.push_back(rest.pointer * tip);
             mean += places.back() / double(dimple.size());
         }
         double squares = 0.0;
@@ -156,7 +159,7 @@ void solvePointer(const PointerCapture& capture, Registration& result) {
     result.warnings = pivot.warnings;
     result.rms = pivot.rms;
     result.shiftSigma = glm::length(pivot.tipSigma);
-    result.fresh = checkFresh(dimpleErrors(capture, pivot.tip), kFreshTip);
+    result.fresh = checkFresh(dimpleErrors(capture, pivot.tip, result.warnings), kFreshTip);
     result.installation.pointerTip = glm::vec3(pivot.tip);
     result.installation.origins.pointer = measured("pivoting, " + std::to_string(pivot.poses) + " poses", result);
     result.summary = "The pointer's tip is known to " + mm(result.shiftSigma) + "; " + worthOf(result) + ".";

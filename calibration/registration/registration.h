@@ -7,6 +7,7 @@
 #include "calibration/registration/device_place.h"
 #include "calibration/registration/eye_alignment.h"
 #include "calibration/registration/fresh_points.h"
+#include "calibration/registration/pose_file.h"
 #include "calibration/registration/touched_dots.h"
 #include "core/geometry/triangle_mesh.h"
 #include "core/scene/installation.h"

@@ -17,6 +17,7 @@ using registration::number;
 
 constexpr std::size_t kFewestMoments = 15;
 constexpr double kStraysFrom = 3.0; ///< times the usual distance from the middle
+constexpr double kSlides = 0.8;     ///< of the distance that a tip at rest may be from its middle
 
 /// Pointer and body at the same moments.
 struct Moment {
@@ -43,6 +44,13 @@ glm::dvec3 middleOfTips(const std::vector<Moment>& moments, const glm::dvec3& ti
         middle[axis] = median(std::move(values));
     }
     return middle;
+}
+
+/// How far the tip is in the last third of a touch from where it was in the first, metres.
+double slideOf(const std::vector<Moment>& moments, const glm::dvec3& tip) {
+    const auto third = static_cast<std::ptrdiff_t>(moments.size() / 3);
+    return glm::distance(middleOfTips({moments.begin(), moments.begin() + third}, tip),
+                         middleOfTips({moments.end() - third, moments.end()}, tip));
 }
 
 void checkMoments(std::size_t shared, const PoseTrack& pointer, const std::string& name) {
@@ -84,9 +92,14 @@ Rest restOf(const Touch& touch, const glm::dvec3& tip, double wander) {
         registration::refuse(Cause::tipSlipped, touch.name.c_str(),
                              "the tip moved by " + number(1000.0 * usual, 1) + " mm",
                              "hold it still on its point for a second");
-    std::erase_if(moments, [&](const Moment& m) { return from(m) > kStraysFrom * usual; });
-
     Rest rest;
+    if (const double slide = slideOf(moments, tip); slide > kSlides * wander)
+        rest.warnings.push_back({Cause::tipSlipped,
+                                 touch.name,
+                                 {},
+                                 "the tip slid by " + number(1000.0 * slide, 1) + " mm while it was held",
+                                 "the middle of it counts; hold it still, and fix what it touches"});
+    std::erase_if(moments, [&](const Moment& m) { return from(m) > kStraysFrom * usual; });
     std::vector<Pose> pointers, bodies;
     glm::dvec3 place(0.0);
     for (const Moment& m : moments) {
@@ -100,7 +113,7 @@ Rest restOf(const Touch& touch, const glm::dvec3& tip, double wander) {
     rest.body = meanPose(bodies);
     rest.pointer.rotation = meanPose(pointers).rotation;
     rest.pointer.position = place - rest.pointer.rotation * tip;
-    rest.warnings = pointer.warnings;
+    rest.warnings.insert(rest.warnings.end(), pointer.warnings.begin(), pointer.warnings.end());
     if (body) rest.warnings.insert(rest.warnings.end(), body->warnings.begin(), body->warnings.end());
     return rest;
 }

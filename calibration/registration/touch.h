@@ -23,7 +23,7 @@ struct Rest {
     Pose body;        ///< in the tracker's world; identity without one
     double rms = 0.0; ///< metres by which single poses have the tip elsewhere
     std::size_t poses = 0;
-    std::vector<Finding> warnings;
+    std::vector<Finding> warnings; ///< as of soundTrack; `tip_slipped` where the tip slid meanwhile
 };
 
 /// Throws CaptureRefused as soundTrack does, `tracker_lost` for fewer than 15 moments, `clock_jumps` where pointer and

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <cstdio>
 #include <string>
+#include <vector>
 
 #include <glm/gtc/quaternion.hpp>
 #include <gmock/gmock.h>
@@ -47,6 +48,64 @@ TEST(HandEyeCommand, TellsHowFastTheClocksDrift) {
     EXPECT_LT(double(found["sigma"]["clockDrift"]), 0.1 * kDrift);
     const Outcome words = lumorph({"calibrate", "handeye", folder["a.csv"], folder["b.csv"]});
     EXPECT_THAT(words.out, ::testing::ContainsRegex("drifting by (79|80)\\.[0-9] ppm"));
+}
+
+/// Sixteen stations of the same hand; `inverse` writes the world in the body's frame.
+std::string stationsOf(double aside, bool named, bool inverse = false) {
+    std::string text = named ? "name,x,y,z,qx,qy,qz,qw\n" : "";
+    for (int k = 0; k < 16; ++k) {
+        std::string row = rowOf(0.0, 2.3 * k, aside);
+        row.erase(0, row.find(',') + 1);
+        if (inverse) {
+            std::array<double, 7> n{};
+            std::sscanf(row.c_str(), "%lf,%lf,%lf,%lf,%lf,%lf,%lf", &n[0], &n[1], &n[2], &n[3], &n[4], &n[5], &n[6]);
+            const glm::dquat turn = glm::conjugate(glm::dquat(n[6], n[3], n[4], n[5]));
+            const glm::dvec3 place = -(turn * glm::dvec3(n[0], n[1], n[2]));
+            std::array<char, 200> line{};
+            std::snprintf(line.data(), line.size(), "%.9f,%.9f,%.9f,%.9f,%.9f,%.9f,%.9f\n", place.x, place.y, place.z,
+                          turn.x, turn.y, turn.z, turn.w);
+            row = line.data();
+        }
+        text += (named ? "P" + std::to_string(k) + "," : "") + row;
+    }
+    return text;
+}
+
+TEST(HandEyeCommand, SolvesStationsWithoutTimes) {
+    const SmallWorkspace folder;
+    writeFile(folder["a.csv"], stationsOf(0.0, false));
+    writeFile(folder["b.csv"], stationsOf(0.1, false));
+    writeFile(folder["c.csv"], stationsOf(0.1, true));
+    const Outcome outcome = lumorph({"calibrate", "handeye", folder["a.csv"], folder["b.csv"], "--stations", "--json"});
+    ASSERT_EQ(outcome.exitCode, 0) << outcome.err;
+    const nlohmann::json found = outcome.json();
+    EXPECT_NEAR(double(found["bFromA"]["position"][0]), -0.1, 1e-5);
+    EXPECT_EQ(int(found["stations"]), 16);
+    EXPECT_FALSE(found.contains("timeOffset"));
+    const Outcome words = lumorph({"calibrate", "handeye", folder["a.csv"], folder["c.csv"], "--stations"});
+    EXPECT_EQ(words.exitCode, 0) << "P0 and 1 are one station, by their order: " << words.err;
+    EXPECT_THAT(words.out, ::testing::HasSubstr("16 stations"));
+    const Outcome moving = lumorph({"calibrate", "handeye", folder["a.csv"], folder["b.csv"]});
+    EXPECT_NE(moving.exitCode, 0);
+    EXPECT_THAT(moving.err, ::testing::HasSubstr("it has no time"));
+    EXPECT_THAT(moving.err, ::testing::HasSubstr("--stations"));
+}
+
+TEST(HandEyeCommand, AnInvertedRecordingIsSolvedWhenItIsSaidWhichItIs) {
+    const SmallWorkspace folder;
+    writeFile(folder["a.csv"], stationsOf(0.0, false, true));
+    writeFile(folder["b.csv"], stationsOf(0.1, false));
+    std::vector<std::string> words{"calibrate", "handeye", folder["a.csv"], folder["b.csv"], "--stations", "--json"};
+    const Outcome refused = lumorph(words);
+    EXPECT_NE(refused.exitCode, 0);
+    EXPECT_EQ(refused.json()["refused"]["cause"], "inverted");
+    EXPECT_THAT(refused.err, ::testing::HasSubstr("--inverted a"));
+    words.insert(words.end(), {"--inverted", "a"});
+    const Outcome solved = lumorph(words);
+    ASSERT_EQ(solved.exitCode, 0) << solved.err;
+    EXPECT_NEAR(double(solved.json()["bFromA"]["position"][0]), -0.1, 1e-5);
+    words.back() = "c";
+    EXPECT_NE(lumorph(words).exitCode, 0);
 }
 
 } // namespace

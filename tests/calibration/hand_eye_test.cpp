@@ -10,6 +10,7 @@
 #include <gtest/gtest.h>
 
 #include "calibration/registration/clock_offset.h"
+#include "calibration/registration/pose_file.h"
 #include "tracked_motion.h"
 
 // R25: two tracked bodies that are joined, each in its own world, against a known truth; and a real recording.

@@ -59,6 +59,28 @@ TEST(Pivot, SlippingSwingsAreNamedAndLeftOut) {
     EXPECT_NE(pivot.warnings[0].why.find("from 4.0 s to 6."), std::string::npos) << pivot.warnings[0].why;
 }
 
+// A loose dimple: at once, or little by little.
+TEST(Pivot, ADimpleThatSlidesIsSaidAndTheTipFoundAllTheSame) {
+    const auto slid = [](bool atOnce, double far) {
+        return [atOnce, far](double t) {
+            const double share = atOnce ? (t < 7.0 ? 0.0 : 1.0) : t / 15.0;
+            return holding(glm::dvec3(0.3, 0.8, -0.2) + far * share * glm::dvec3(0.6, 0.0, 0.8), t, 0.45);
+        };
+    };
+    for (unsigned seed = 700; seed < 706; ++seed)
+        for (const bool atOnce : {true, false})
+            for (const double far : {0.006, 0.010, 0.025}) {
+                const Pivot pivot = solvePivot(test::trackOf(slid(atOnce, far), 15.0, 60.0, seed));
+                const std::string what = std::to_string(1000.0 * far) + (atOnce ? " mm at once" : " mm slowly");
+                ASSERT_FALSE(pivot.warnings.empty()) << what;
+                for (const Finding& warning : pivot.warnings) EXPECT_EQ(keyOf(warning.cause), "tip_slipped") << what;
+                double said = 0.0;
+                ASSERT_EQ(std::sscanf(pivot.warnings[0].why.c_str(), "the dimple slid by %lf mm", &said), 1) << what;
+                EXPECT_NEAR(said, 1000.0 * far, std::max(2.0, 150.0 * far)) << what; // parts are as long as an eighth
+                EXPECT_LT(glm::distance(pivot.tip, kTip), atOnce && far < 0.02 ? 0.001 : 0.002) << what;
+            }
+}
+
 TEST(Pivot, SwingsThatTellTooLittleAreRefusedWithWhatIsMissing) {
     const auto swung = [](glm::dvec3 axis) {
         return test::trackOf(

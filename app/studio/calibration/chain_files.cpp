@@ -7,6 +7,8 @@
 
 #include "calibration/registration/dwells.h"
 #include "calibration/registration/pivot.h"
+#include "calibration/registration/pose_file.h"
+#include "calibration/registration/time_unit.h"
 #include "core/base/file.h"
 
 namespace lumorph::studio {
@@ -23,7 +25,8 @@ std::string recordedText(const FileTask& task, std::size_t file) {
 }
 
 PoseTrack recordedTrack(const FileTask& task, std::size_t file) {
-    return parsePoseTrack(recordedText(task, file), task.files.at(file).filename().string());
+    const std::string name = task.files.at(file).filename().string();
+    return inKnownSeconds(parsePoseTrack(recordedText(task, file), name), name);
 }
 
 /// The rests of a tip in one recording, by the places where it rested.
