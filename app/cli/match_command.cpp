@@ -199,6 +199,7 @@ const Model::Animation& chooseAnimation(const Model& model, const std::string& p
 void matchAnimation(const Matcher& matcher, const MatchArguments& arguments, const Session& session) {
     const Model model = readModel(arguments.target.path);
     const Model::Animation& animation = chooseAnimation(model, arguments.target.path, arguments.animation);
+    printWarnings(model.warnings);
     ClipOptions options;
     options.framesPerSecond = arguments.framesPerSecond;
     options.refined = arguments.method == "refined";

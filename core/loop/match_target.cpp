@@ -31,8 +31,10 @@ int chosenAnimation(const Model& model, std::optional<int> wish, const std::stri
     return *wish;
 }
 
-void checkTriangles(std::size_t triangles, const std::string& file) {
-    if (triangles == 0) throw DataError(file, "it holds no triangles", "export the model as a surface of polygons");
+void checkTriangles(std::size_t triangles, const std::vector<std::string>& warnings, const std::string& file) {
+    if (triangles == 0)
+        throw DataError(file, "it holds no triangles" + (warnings.empty() ? std::string() : " (" + warnings.front() + ")"),
+                        "export the model as a surface of polygons");
     if (triangles > kMaxTriangles)
         throw DataError(file,
                         "it has " + std::to_string(triangles) + " triangles; at most " + std::to_string(kMaxTriangles) +
@@ -53,10 +55,11 @@ void checkVolume(const MatchTarget& target, const std::string& file) {
 }
 
 /// A mesh that moves is used as it is: a repair would hold for one of its poses only.
-Target movingTarget(TriangleMesh mesh) {
-    if (isClosedSolid(mesh)) return {std::move(mesh), true, {}};
-    Target target{std::move(mesh), false, {}};
-    target.warnings = checkMesh(target.mesh, IntersectionTest::skip).findings();
+Target movingTarget(TriangleMesh mesh, std::vector<std::string> warnings) {
+    if (isClosedSolid(mesh)) return {std::move(mesh), true, std::move(warnings)};
+    Target target{std::move(mesh), false, std::move(warnings)};
+    const std::vector<std::string> findings = checkMesh(target.mesh, IntersectionTest::skip).findings();
+    target.warnings.insert(target.warnings.end(), findings.begin(), findings.end());
     target.warnings.emplace_back("The animated target is not a closed solid; what counts as inside is estimated by "
                                  "winding numbers in every frame, which makes matching slower and may differ near the "
                                  "holes. Close it in a modeller.");
@@ -77,27 +80,28 @@ MatchTarget targetOfModel(std::shared_ptr<const Model> model, const std::string&
     const int index = chosenAnimation(*model, wish, file);
     const Model::Animation* animation = index < 0 ? nullptr : &model->animations[static_cast<std::size_t>(index)];
     TriangleMesh mesh = animation ? flatten(*model, *animation, 0.0) : flatten(*model);
-    checkTriangles(mesh.triangles.size(), file);
+    checkTriangles(mesh.triangles.size(), model->warnings, file);
     progress.report(0.3, "looking the mesh over");
     target.name = model->name;
     target.model = std::move(model);
     target.duration = animation ? animation->duration() : 0.0;
     if (target.duration > 0.0) {
         target.animation = index;
-        target.solid = movingTarget(std::move(mesh));
+        target.solid = movingTarget(std::move(mesh), target.model->warnings);
         measureAnimation(target, *animation, progress);
     } else {
-        target.solid = makeTarget(std::move(mesh));
+        target.solid = makeTarget(std::move(mesh), target.model->warnings);
         target.box = boundingBox(target.solid.mesh.positions);
     }
     return target;
 }
 
-MatchTarget targetOfMesh(TriangleMesh mesh, const std::string& file, const Progress& progress) {
-    checkTriangles(mesh.triangles.size(), file);
+MatchTarget targetOfMesh(TriangleMesh mesh, std::vector<std::string> warnings, const std::string& file,
+                         const Progress& progress) {
+    checkTriangles(mesh.triangles.size(), warnings, file);
     progress.report(0.3, "looking the mesh over");
     MatchTarget target;
-    target.solid = makeTarget(std::move(mesh));
+    target.solid = makeTarget(std::move(mesh), std::move(warnings));
     target.box = boundingBox(target.solid.mesh.positions);
     return target;
 }
@@ -115,9 +119,10 @@ std::shared_ptr<const MatchTarget> readMatchTarget(const std::filesystem::path& 
             progress.throwIfCancelled();
             target = targetOfModel(std::move(model), file.string(), animation, progress);
         } else {
-            TriangleMesh mesh = readMesh(file);
+            std::vector<std::string> warnings;
+            TriangleMesh mesh = readMesh(file, &warnings);
             progress.throwIfCancelled();
-            target = targetOfMesh(std::move(mesh), file.string(), progress);
+            target = targetOfMesh(std::move(mesh), std::move(warnings), file.string(), progress);
         }
     } catch (const InvalidInput& error) {
         throw DataError(file.string(), error.why(), error.remedy());

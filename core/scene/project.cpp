@@ -65,7 +65,8 @@ Project readProject(const fs::path& file) {
     if (fs::exists(file, failed) && fs::is_other(file, failed))
         throw DataError(file.string(), "is not a file", "choose a .lumorph file");
     const std::vector<std::byte> bytes = readFile(file, JsonLimits{}.bytes);
-    Project project = parseProject({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, file.string());
+    const PlainText text(bytes);
+    Project project = parseProject(text.view(), file.string());
     refuseLinksOutside(project, file);
     return project;
 }

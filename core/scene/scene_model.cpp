@@ -64,6 +64,8 @@ public:
             scene_->materials.push_back(converted(material));
         // Decoded, they are not needed a second time.
         for (Model::Image& image : scene_->model.images) image.bytes = {};
+        for (const std::string& warning : scene_->model.warnings)
+            loaded_.problem += (loaded_.problem.empty() ? name_ + ": " : " ") + warning;
         loaded_.model = std::move(scene_);
         return std::move(loaded_);
     }
@@ -115,7 +117,8 @@ private:
             budget_.charge(decoded);
             image = std::make_shared<const Image>(std::move(decoded));
         } catch (const DataError& error) {
-            if (loaded_.problem.empty()) loaded_.problem = error.what();
+            // One that could not be read is named by the model's own warnings.
+            if (loaded_.problem.empty() && !source.bytes.empty()) loaded_.problem = error.what();
             image = std::make_shared<const Image>(placeholderImage());
         }
         return *image;

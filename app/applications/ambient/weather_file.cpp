@@ -11,6 +11,7 @@
 #include "core/base/error.h"
 #include "core/base/file.h"
 #include "core/base/json_check.h"
+#include "core/base/text.h"
 
 namespace lumorph::ambient {
 namespace {
@@ -208,7 +209,8 @@ Forecast readForecast(std::string_view text, const std::string& name) {
 
 Forecast readForecastFile(const std::filesystem::path& file) {
     const std::vector<std::byte> bytes = readFile(file, kMostBytes);
-    return readForecast({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, file.string());
+    const PlainText text(bytes);
+    return readForecast(text.view(), file.string());
 }
 
 } // namespace lumorph::ambient

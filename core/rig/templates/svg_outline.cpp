@@ -566,7 +566,8 @@ private:
 } // namespace
 
 std::vector<glm::dvec2> svgOutline(std::string_view svg, const std::string& name) {
-    return SvgReader(svg, name).outline();
+    const PlainText text(svg);
+    return SvgReader(text.view(), name).outline();
 }
 
 } // namespace lumorph
