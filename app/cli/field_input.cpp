@@ -87,8 +87,8 @@ TargetVoxels voxelsOf(const Session& session, const Field& field, const Target& 
 
 Target readTargetMesh(const Session& session, const std::string& path) {
     std::vector<std::string> warnings;
-    TriangleMesh mesh = path == "-" ? parseMesh(session.readInput(path), inputName(path), warnings)
-                                    : readMesh(path, &warnings);
+    TriangleMesh mesh =
+        path == "-" ? parseMesh(session.readInput(path), inputName(path), warnings) : readMesh(path, &warnings);
     return makeTarget(std::move(mesh), std::move(warnings));
 }
 
@@ -104,8 +104,7 @@ TargetVoxels readTarget(const Session& session, const Field& field, const Target
         return gridVoxels(field, bytes, name);
     }
     std::vector<std::string> warnings;
-    TriangleMesh mesh =
-        arguments.path == "-" ? parseMesh(bytes, name, warnings) : readMesh(arguments.path, &warnings);
+    TriangleMesh mesh = arguments.path == "-" ? parseMesh(bytes, name, warnings) : readMesh(arguments.path, &warnings);
     if (arguments.surface) return surfaceVoxels(field, std::move(mesh), std::move(warnings), arguments.fit);
     const Target target = makeTarget(std::move(mesh), std::move(warnings));
     std::optional<Placement> placement;

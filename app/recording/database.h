@@ -48,8 +48,8 @@ private:
 class Database {
 public:
     enum class Mode { readOnly, create };
-    /// `create` throws DeviceError for a file that is there already. `readOnly` writes nothing, neither into the file nor
-    /// beside it.
+    /// `create` throws DeviceError for a file that is there already. `readOnly` writes nothing, neither into the file
+    /// nor beside it.
     Database(const std::filesystem::path& file, Mode mode);
 
     /// How a file was left that is read.

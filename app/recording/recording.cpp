@@ -143,9 +143,9 @@ void sayHowItWasLeft(Database::Left left, const std::filesystem::path& file, Rec
     if (left == Database::Left::open)
         recording.warnings.emplace_back("It is still being recorded; what has reached the disk is read.");
     if (left == Database::Left::notClosed)
-        recording.warnings.emplace_back(
-            "It was not closed, so its recorder ended abruptly; all that reached the disk is read, the last half second "
-            "may be missing.");
+        recording.warnings.emplace_back("It was not closed, so its recorder ended abruptly; all that reached the disk "
+                                        "is read, the last half second "
+                                        "may be missing.");
     if (left == Database::Left::withoutLog)
         recording.warnings.push_back("It was not closed, and its log " + logName(file) +
                                      " is not beside it; what is in the file itself is read, its end may be missing.");

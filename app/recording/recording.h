@@ -16,9 +16,9 @@ struct Recording {
     std::vector<FrameRow> frames; ///< this and the next two by time
     std::vector<PoseRow> poses;
     std::vector<EventRow> events;
-    std::vector<InputRow> inputs; ///< by time; empty in what an older version recorded
-    std::vector<ServoRow> servo;  ///< as it went in and came out
-    bool closed = true;           ///< its recorder ended it
+    std::vector<InputRow> inputs;      ///< by time; empty in what an older version recorded
+    std::vector<ServoRow> servo;       ///< as it went in and came out
+    bool closed = true;                ///< its recorder ended it
     std::vector<std::string> warnings; ///< where it did not: what that means, in plain sentences
 };
 

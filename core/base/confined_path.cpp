@@ -14,8 +14,8 @@ namespace {
 
 constexpr std::size_t kMostEntries = 100'000; ///< of a folder that is looked through
 
-/// The one entry of `folder` whose name differs from `name` in Unicode normal form or in case alone; nothing where there
-/// is none or several.
+/// The one entry of `folder` whose name differs from `name` in Unicode normal form or in case alone; nothing where
+/// there is none or several.
 std::optional<fs::path> likeNamed(const fs::path& folder, const fs::path& name) {
     const std::u32string key = nameKey(name.native());
     std::optional<fs::path> found;
@@ -30,8 +30,8 @@ std::optional<fs::path> likeNamed(const fs::path& folder, const fs::path& name) 
     return found;
 }
 
-/// Where `relative`, which stays inside, leads to something from `root`: each part as it is written or, where nothing is
-/// called so, by the name that is like it.
+/// Where `relative`, which stays inside, leads to something from `root`: each part as it is written or, where nothing
+/// is called so, by the name that is like it.
 std::optional<fs::path> likeSpelled(const fs::path& root, const fs::path& relative) {
     fs::path at = root;
     for (const fs::path& part : relative) {

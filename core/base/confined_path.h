@@ -11,8 +11,8 @@ namespace lumorph {
 
 /// Where `relative` leads from `folder`, links followed as far as the path exists; nothing when it leaves the folder,
 /// by its words or through a link, or cannot be followed. Where it leads to nothing as it is written, names are taken
-/// that differ in Unicode normal form or in case alone, and backslashes are taken for slashes: files that another system
-/// wrote and a copy renamed.
+/// that differ in Unicode normal form or in case alone, and backslashes are taken for slashes: files that another
+/// system wrote and a copy renamed.
 [[nodiscard]] std::optional<std::filesystem::path> confinedPath(const std::filesystem::path& folder,
                                                                 const std::filesystem::path& relative);
 

@@ -12,8 +12,8 @@ struct Composed {
     std::uint16_t whole, first, second;
 };
 
-// Canonical decompositions of Unicode 15 up to U+FFFF, by the composed character. Without Hangul, which is computed, and
-// compatibility ideographs.
+// Canonical decompositions of Unicode 15 up to U+FFFF, by the composed character. Without Hangul, which is computed,
+// and compatibility ideographs.
 // clang-format off
 constexpr std::array kComposed = std::to_array<Composed>({
     {0xC0, 0x41, 0x300}, {0xC1, 0x41, 0x301}, {0xC2, 0x41, 0x302}, {0xC3, 0x41, 0x303}, {0xC4, 0x41, 0x308},
@@ -252,7 +252,12 @@ constexpr char32_t kReplacement = 0xFFFD;
 char32_t takeCharacter(std::string_view& text) noexcept {
     const auto byte = [&](std::size_t i) -> char32_t { return static_cast<unsigned char>(text[i]); };
     const char32_t first = byte(0);
-    const std::size_t length = first < 0x80 ? 1 : first < 0xC2 ? 0 : first < 0xE0 ? 2 : first < 0xF0 ? 3 : first < 0xF5 ? 4 : 0;
+    const std::size_t length = first < 0x80   ? 1
+                               : first < 0xC2 ? 0
+                               : first < 0xE0 ? 2
+                               : first < 0xF0 ? 3
+                               : first < 0xF5 ? 4
+                                              : 0;
     const auto follows = [&](std::size_t i) { return (byte(i) & 0xC0U) == 0x80; };
     bool whole = length > 0 && length <= text.size();
     for (std::size_t i = 1; whole && i < length; ++i) whole = follows(i);
@@ -288,7 +293,8 @@ void addDecomposed(std::u32string& key, char32_t c) {
         if (index % kTails != 0) key += kTail + index % kTails;
         return;
     }
-    const auto found = c < kReplacement ? std::ranges::lower_bound(kComposed, c, {}, &Composed::whole) : kComposed.end();
+    const auto found =
+        c < kReplacement ? std::ranges::lower_bound(kComposed, c, {}, &Composed::whole) : kComposed.end();
     if (found == kComposed.end() || found->whole != c) {
         key += small(c);
         return;

@@ -14,7 +14,7 @@ namespace lumorph {
 namespace {
 
 /// The name under which a copy of the model finds the file: as it is written, with the slashes of this system.
-std::filesystem::path nameOf(const std::string& uri, const std::filesystem::path& at) {
+std::filesystem::path nameBeside(const std::string& uri, const std::filesystem::path& at) {
     std::string name = gltf::percentDecoded(uri);
     if (at.filename().native().find('\\') == std::string::npos) std::ranges::replace(name, '\\', '/');
     return std::filesystem::path(name).lexically_normal();
@@ -41,7 +41,7 @@ std::vector<ReferredFile> filesReferredBy(const std::filesystem::path& gltf) {
             // A picture may be missing; what lies in its place, and data, have to be files.
             std::error_code failed;
             const bool missing = list == std::string_view("images") && !std::filesystem::exists(at, failed);
-            ReferredFile file{nameOf(uri, at), missing ? at : folder.find(uri, place, subject), missing};
+            ReferredFile file{nameBeside(uri, at), missing ? at : folder.find(uri, place, subject), missing};
             if (names.insert(file.name).second) files.push_back(std::move(file));
         }
     }

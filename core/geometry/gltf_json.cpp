@@ -137,14 +137,28 @@ void checkVersion(const json& document, const std::string& file) {
 
 // Extensions that are read, or met by reading any component type, and such that change how a surface looks, where its
 // texture lies, or say something about it; without these the shape is the same.
-constexpr std::array<std::string_view, 20> kReadWithout = {
-    "KHR_mesh_quantization", "EXT_mesh_gpu_instancing",  "KHR_node_visibility",     "KHR_animation_pointer",
-    "FB_ngon_encoding",      "CESIUM_primitive_outline", "EXT_mesh_features",       "EXT_instance_features",
-    "EXT_feature_metadata",  "EXT_structural_metadata",  "EXT_mesh_manifold",       "KHR_xmp",
-    "KHR_xmp_json_ld",       "KHR_node_hoverability",    "KHR_node_selectability",  "KHR_interactivity",
-    "MSFT_lod",              "VRM",                      "VRMC_vrm",                "VRMC_springBone"};
-constexpr std::array<std::string_view, 8> kLooks = {"KHR_materials_",   "KHR_texture_",    "EXT_texture_",
-                                                    "MSFT_texture_",    "KHR_lights_",     "EXT_lights_",
+constexpr std::array<std::string_view, 20> kReadWithout = {"KHR_mesh_quantization",
+                                                           "EXT_mesh_gpu_instancing",
+                                                           "KHR_node_visibility",
+                                                           "KHR_animation_pointer",
+                                                           "FB_ngon_encoding",
+                                                           "CESIUM_primitive_outline",
+                                                           "EXT_mesh_features",
+                                                           "EXT_instance_features",
+                                                           "EXT_feature_metadata",
+                                                           "EXT_structural_metadata",
+                                                           "EXT_mesh_manifold",
+                                                           "KHR_xmp",
+                                                           "KHR_xmp_json_ld",
+                                                           "KHR_node_hoverability",
+                                                           "KHR_node_selectability",
+                                                           "KHR_interactivity",
+                                                           "MSFT_lod",
+                                                           "VRM",
+                                                           "VRMC_vrm",
+                                                           "VRMC_springBone"};
+constexpr std::array<std::string_view, 8> kLooks = {"KHR_materials_",   "KHR_texture_",   "EXT_texture_",
+                                                    "MSFT_texture_",    "KHR_lights_",    "EXT_lights_",
                                                     "ADOBE_materials_", "VRMC_materials_"};
 
 bool canRead(const std::string& extension) {

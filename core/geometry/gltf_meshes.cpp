@@ -191,7 +191,8 @@ public:
         : structure_(structure), asked_(structure.bufferViews.size(), 0.0) {
         for (const tinygltf::Mesh& mesh : structure.meshes)
             for (const tinygltf::Primitive& primitive : mesh.primitives)
-                if (const std::optional<std::size_t> view = viewOf(primitive)) asked_[*view] += bytesOf(primitive, *view);
+                if (const std::optional<std::size_t> view = viewOf(primitive))
+                    asked_[*view] += bytesOf(primitive, *view);
     }
     [[nodiscard]] bool hold(const tinygltf::Primitive& primitive) const {
         const std::optional<std::size_t> view = viewOf(primitive);
@@ -213,8 +214,8 @@ private:
     }
     [[nodiscard]] double bytesOf(const tinygltf::Primitive& primitive, std::size_t view) const {
         const tinygltf::Accessor& positions = *positionsOf(primitive);
-        const double each = 3.0 * std::max(tinygltf::GetComponentSizeInBytes(
-                                      static_cast<std::uint32_t>(positions.componentType)), 1);
+        const double each =
+            3.0 * std::max(tinygltf::GetComponentSizeInBytes(static_cast<std::uint32_t>(positions.componentType)), 1);
         const double stride = std::max(static_cast<double>(structure_.bufferViews[view].byteStride), each);
         return positions.count == 0 ? 0.0 : static_cast<double>(positions.count - 1) * stride + each;
     }

@@ -37,8 +37,8 @@ struct Source {
 /// EXT_mesh_gpu_instancing: where the copies of a node's mesh stand in the node's frame; none where it is shown once.
 [[nodiscard]] std::vector<Model::Node> instancesOf(const Source& source, std::size_t node);
 
-/// KHR_animation_pointer: a channel's target as the specification without it writes it; nothing where it moves something
-/// else than a node.
+/// KHR_animation_pointer: a channel's target as the specification without it writes it; nothing where it moves
+/// something else than a node.
 struct PointedNode {
     int node = -1;
     std::string path;

@@ -251,11 +251,10 @@ private:
 
     void warnOfChannels() const {
         if (passedOver_ > 0)
-            source_.warnings.push_back(std::to_string(passedOver_) +
-                                       (passedOver_ == 1 ? " channel of its animations moves"
-                                                         : " channels of its animations move") +
-                                       " something else than a node and " + (passedOver_ == 1 ? "is" : "are") +
-                                       " passed over.");
+            source_.warnings.push_back(
+                std::to_string(passedOver_) +
+                (passedOver_ == 1 ? " channel of its animations moves" : " channels of its animations move") +
+                " something else than a node and " + (passedOver_ == 1 ? "is" : "are") + " passed over.");
     }
 
     Model::Channel channel(const tinygltf::Animation& animation, const tinygltf::AnimationChannel& from,
@@ -319,8 +318,8 @@ private:
     Model& model_;
     std::vector<int> parents_;
     std::vector<std::size_t> order_;
-    std::vector<int> place_; ///< where a node of the file stands in the model
-    std::vector<bool> hidden_; ///< by the file's numbers
+    std::vector<int> place_;     ///< where a node of the file stands in the model
+    std::vector<bool> hidden_;   ///< by the file's numbers
     std::size_t passedOver_ = 0; ///< channels of animations
 };
 

@@ -61,8 +61,8 @@ public:
     Folder() = default;
     explicit Folder(std::filesystem::path path) : path_(std::move(path)) {}
 
-    /// Where the file that `uri` names lies or would lie, links followed; its name may differ in Unicode normal form, case
-    /// and kind of slashes. Refuses whatever does not lie inside the folder.
+    /// Where the file that `uri` names lies or would lie, links followed; its name may differ in Unicode normal form,
+    /// case and kind of slashes. Refuses whatever does not lie inside the folder.
     [[nodiscard]] std::filesystem::path place(const std::string& uri, const std::string& place,
                                               const std::string& file) const;
     /// The same; refuses what is no file.

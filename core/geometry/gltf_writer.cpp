@@ -321,7 +321,7 @@ private:
     void writeImage(const Model::Image& from) {
         json to = json::object();
         if (from.bytes.empty())
-            to["uri"] = "data:application/octet-stream;base64,"; // one that could not be read stays that
+            to["uri"] = "data:;base64,"; // one that could not be read stays that
         else
             to["bufferView"] = addView(from.bytes.data(), from.bytes.size());
         setName(to, from.name);

@@ -21,8 +21,7 @@ inline constexpr std::size_t kMaxFileBytes = std::size_t{2} << 30;
 /// are the file's own. What of a sound mesh is passed over, or stands in for something, is added to `warnings`.
 /// Throws DataError naming the file, the line or element where known, and the remedy: not readable,
 /// empty, unknown extension, truncated, an index out of range, NaN or infinite coordinates, too large.
-[[nodiscard]] TriangleMesh readMesh(const std::filesystem::path& file,
-                                    std::vector<std::string>* warnings = nullptr);
+[[nodiscard]] TriangleMesh readMesh(const std::filesystem::path& file, std::vector<std::string>* warnings = nullptr);
 
 /// Writes by extension: .obj, .stl (binary), .glb. Written beside the target and renamed, so that a
 /// failure leaves no half file. Throws DeviceError when the disk refuses.

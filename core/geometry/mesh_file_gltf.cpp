@@ -10,7 +10,8 @@ TriangleMesh readGltfMesh(const std::filesystem::path& file, std::vector<std::st
     TriangleMesh mesh = flatten(model);
     if (mesh.empty())
         throw DataError(file.string(),
-                        "holds no mesh" + (model.warnings.empty() ? std::string() : " (" + model.warnings.front() + ")"),
+                        "holds no mesh" +
+                            (model.warnings.empty() ? std::string() : " (" + model.warnings.front() + ")"),
                         "export the model as a surface of polygons");
     warnings.insert(warnings.end(), model.warnings.begin(), model.warnings.end());
     return mesh;

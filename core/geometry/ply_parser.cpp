@@ -71,7 +71,8 @@ private:
         first_ = false;
         double value = 0.0;
         if (word.empty() && !scanner_.atEnd() && !restIsBlank())
-            fail("", 0, "the line ends where " + what + " should follow", "correct the line, or export the model again");
+            fail("", 0, "the line ends where " + what + " should follow",
+                 "correct the line, or export the model again");
         if (word.empty())
             fail("", 0, "the file ends where " + what + " should follow", "it is cut short; copy or export it again");
         if (!parseReal(word, value)) fail("", 0, inQuotes(word) + " is not a number", "export the model again");

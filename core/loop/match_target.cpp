@@ -33,7 +33,8 @@ int chosenAnimation(const Model& model, std::optional<int> wish, const std::stri
 
 void checkTriangles(std::size_t triangles, const std::vector<std::string>& warnings, const std::string& file) {
     if (triangles == 0)
-        throw DataError(file, "it holds no triangles" + (warnings.empty() ? std::string() : " (" + warnings.front() + ")"),
+        throw DataError(file,
+                        "it holds no triangles" + (warnings.empty() ? std::string() : " (" + warnings.front() + ")"),
                         "export the model as a surface of polygons");
     if (triangles > kMaxTriangles)
         throw DataError(file,

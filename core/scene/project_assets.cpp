@@ -144,13 +144,13 @@ fs::path assetPath(const fs::path& projectFile, const std::string& asset) {
     std::error_code failed;
     if (!fs::exists(*path, failed)) {
         const auto near = bundled ? std::nullopt : sameNameIn(folder, asset);
-        throw DataError(subject,
-                        inQuotes(asset, kLongestName) + " is not there" +
-                            (near ? ", but " + inQuotes(near->string(), kLongestName) + " lies beside the project"
-                                  : std::string()),
-                        bundled ? "install Lumorph again"
-                        : near  ? "move it back to where the project looks for it, or choose it again"
-                                : "put it back, or choose another file");
+        throw DataError(
+            subject,
+            inQuotes(asset, kLongestName) + " is not there" +
+                (near ? ", but " + inQuotes(near->string(), kLongestName) + " lies beside the project" : std::string()),
+            bundled ? "install Lumorph again"
+            : near  ? "move it back to where the project looks for it, or choose it again"
+                    : "put it back, or choose another file");
     }
     return *path;
 }

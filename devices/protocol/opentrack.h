@@ -11,8 +11,8 @@ namespace lumorph::opentrack {
 
 inline constexpr std::size_t kPacketBytes = 48;
 
-/// What opentrack's output "UDP over network" sends: six doubles, little endian. Programs that stand for it send them big
-/// endian, as networks do; these are read too.
+/// What opentrack's output "UDP over network" sends: six doubles, little endian. Programs that stand for it send them
+/// big endian, as networks do; these are read too.
 struct Packet {
     glm::dvec3 centimetres{0.0};
     double yawDegrees = 0.0;

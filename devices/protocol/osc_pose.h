@@ -22,8 +22,8 @@ struct PosePart {
 
 /// All parts in a packet, which is a message or a bundle of them, in their order. Sound messages about other things are
 /// left out. Throws DataError for what is no OSC, a wrong number or kind of arguments, and numbers that are not finite
-/// or out of range (1000 m, ten turns). A message of a bundle that is wrong in itself costs itself alone: it is left out,
-/// and `refused` gets a sentence for it.
+/// or out of range (1000 m, ten turns). A message of a bundle that is wrong in itself costs itself alone: it is left
+/// out, and `refused` gets a sentence for it.
 [[nodiscard]] std::vector<PosePart> readPoseParts(std::span<const std::byte> datagram,
                                                   std::vector<std::string>* refused = nullptr);
 

@@ -35,7 +35,8 @@ public:
     }
 
 protected:
-    /// The frame that a packet completes, or none yet; what of it cannot be used is added to `refused`. Throws DataError.
+    /// The frame that a packet completes, or none yet; what of it cannot be used is added to `refused`. Throws
+    /// DataError.
     virtual const TrackerFrame* read(std::span<const std::byte> bytes, Microseconds now,
                                      std::vector<std::string>& refused) = 0;
     [[nodiscard]] virtual std::string advice(const TrackerSituation& situation) const = 0;

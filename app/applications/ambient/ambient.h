@@ -31,9 +31,8 @@ struct AmbientSettings {
 
 /// Settings by name, as they come from outside: `weather` a file in Open-Meteo's JSON, whose place counts where none is
 /// given, `place` as `placeFrom` reads it, `begin` a local time (2026-05-17T14:00), `day` and `anticipation` seconds,
-/// `clock` real or quick. Without `begin` a forecast begins with its first hour, unless it comes again and again: then the
-/// clock is the real one. Throws InvalidInput and DataError
-/// naming the setting.
+/// `clock` real or quick. Without `begin` a forecast begins with its first hour, unless it comes again and again: then
+/// the clock is the real one. Throws InvalidInput and DataError naming the setting.
 [[nodiscard]] AmbientSettings settingsFrom(const DemoTold& settings);
 /// Shows the room's own time, at its own pace.
 void takeRealClock(AmbientSettings& settings);

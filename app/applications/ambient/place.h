@@ -13,9 +13,9 @@ namespace lumorph::ambient {
 
 /// Where and by which clock the display tells time and weather.
 struct Place {
-    double latitude = 52.52;   ///< degrees, north positive
-    double longitude = 13.405; ///< degrees, east positive
-    double utcOffset = 3600.0; ///< seconds by which its clocks are ahead of UTC, where no zone says it
+    double latitude = 52.52;                   ///< degrees, north positive
+    double longitude = 13.405;                 ///< degrees, east positive
+    double utcOffset = 3600.0;                 ///< seconds by which its clocks are ahead of UTC, where no zone says it
     std::shared_ptr<const TimeZone> zone = {}; ///< whose clocks it has; null: they never change
     /// The zone follows from where it is.
     bool operator==(const Place& other) const {

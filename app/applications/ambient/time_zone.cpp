@@ -35,9 +35,7 @@ public:
         return taken;
     }
     template <typename Number> Number next() { return readNumber<Number>(take(sizeof(Number)), std::endian::big); }
-    [[nodiscard]] std::string_view text() const {
-        return {reinterpret_cast<const char*>(rest_.data()), rest_.size()};
-    }
+    [[nodiscard]] std::string_view text() const { return {reinterpret_cast<const char*>(rest_.data()), rest_.size()}; }
 
 private:
     std::span<const std::byte> rest_;
@@ -60,8 +58,8 @@ Counts countsOf(Numbers& numbers, const std::string& name) {
     Counts counts;
     counts.version = static_cast<char>(numbers.take(1)[0]);
     (void)numbers.take(15);
-    for (std::size_t* count : {&counts.utc, &counts.standard, &counts.leaps, &counts.times, &counts.types,
-                               &counts.characters}) {
+    for (std::size_t* count :
+         {&counts.utc, &counts.standard, &counts.leaps, &counts.times, &counts.types, &counts.characters}) {
         *count = numbers.next<std::uint32_t>();
         if (*count > kMostZoneBytes) refuse(name);
     }
@@ -197,8 +195,8 @@ double TimeZone::dayOf(const Rule& rule, int year) noexcept {
     const double first = daysUntil(year, static_cast<unsigned>(rule.month), 1);
     const int weekday = static_cast<int>(std::fmod(std::fmod(first + 4.0, 7.0) + 7.0, 7.0)); // 1970 began on a Thursday
     double day = first + (rule.day - weekday + 7) % 7 + 7.0 * (rule.week - 1);
-    const double next = rule.month == 12 ? daysUntil(year + 1, 1, 1)
-                                         : daysUntil(year, static_cast<unsigned>(rule.month) + 1, 1);
+    const double next =
+        rule.month == 12 ? daysUntil(year + 1, 1, 1) : daysUntil(year, static_cast<unsigned>(rule.month) + 1, 1);
     while (day >= next) day -= 7.0;
     return day;
 }

@@ -192,8 +192,8 @@ void fillGaps(std::vector<double>& values, bool turns) {
     }
 }
 
-/// The hours of which all is known that has to be, and those between them; `begin` becomes that of the first. The end of a
-/// forecast reaches beyond what some of its models know.
+/// The hours of which all is known that has to be, and those between them; `begin` becomes that of the first. The end
+/// of a forecast reaches beyond what some of its models know.
 std::size_t cutToKnown(const Reader& reader, AllValues& values, double& begin) {
     const std::size_t count = values[kTemperature].size();
     std::size_t first = 0, end = count;
@@ -240,8 +240,8 @@ std::vector<WeatherHour> hoursOf(const Reader& reader, std::size_t all, double& 
     return hours;
 }
 
-/// Times are written with the offset of the day on which the forecast was asked for, also where clocks change in it; the
-/// zone says what they show.
+/// Times are written with the offset of the day on which the forecast was asked for, also where clocks change in it;
+/// the zone says what they show.
 std::shared_ptr<const TimeZone> zoneOf(const json& root) {
     const bool named = root.contains("timezone") && root.at("timezone").is_string();
     return named ? zoneNamed(root.at("timezone").get<std::string>()) : nullptr;
@@ -266,8 +266,8 @@ Forecast readForecast(std::string_view text, const std::string& name) {
     std::vector<WeatherHour> hours = hoursOf(reader, times.size(), begin);
     Forecast forecast{Weather(begin, std::move(hours)), {}};
     if (root.contains("latitude") && root.contains("longitude"))
-        forecast.place = Place{reader.number("latitude", 0.0, 90.0), reader.number("longitude", 0.0, 180.0), offset,
-                               zoneOf(root)};
+        forecast.place =
+            Place{reader.number("latitude", 0.0, 90.0), reader.number("longitude", 0.0, 180.0), offset, zoneOf(root)};
     return forecast;
 }
 

@@ -123,8 +123,9 @@ void ReplayService::Data::take(const fs::path& from, ReadSession read) {
     session = std::move(read);
     notices.dismissAll(kReplayPlace);
     for (const std::string& warning : session.recording->warnings)
-        notices.post(kReplayPlace, {Notice::Level::warning, tr("Recording %1").arg(nameOf(file)),
-                                    QString::fromStdString(warning), {}, {}});
+        notices.post(
+            kReplayPlace,
+            {Notice::Level::warning, tr("Recording %1").arg(nameOf(file)), QString::fromStdString(warning), {}, {}});
     if (session.recording->frames.empty()) {
         notices.post(kReplayPlace, {Notice::Level::warning,
                                     nameOf(file),
