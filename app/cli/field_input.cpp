@@ -7,9 +7,9 @@
 
 #include "core/base/error.h"
 #include "core/base/statistics.h"
+#include "core/geometry/gltf_reader.h"
 #include "core/geometry/mesh_file.h"
 #include "core/geometry/mesh_parsers.h"
-#include "core/geometry/model.h"
 #include "core/voxels/nrrd.h"
 #include "core/voxels/surface.h"
 
@@ -31,10 +31,10 @@ bool beginsWith(std::span<const std::byte> bytes, std::string_view magic) {
 /// What is passed over of it is added to `warnings`.
 TriangleMesh parseMesh(std::span<const std::byte> bytes, const std::string& name, std::vector<std::string>& warnings) {
     if (!beginsWith(bytes, "glTF")) return parseObj(bytes, name);
-    const Model model = readGlb(bytes, name);
-    TriangleMesh mesh = flatten(model);
+    const ReadModel read = readGlbBytes(bytes, name);
+    TriangleMesh mesh = flatten(read.model);
     if (mesh.empty()) throw DataError(name, "holds no mesh", "export the model as a surface of polygons");
-    warnings.insert(warnings.end(), model.warnings.begin(), model.warnings.end());
+    warnings.insert(warnings.end(), read.warnings.begin(), read.warnings.end());
     return mesh;
 }
 
@@ -51,6 +51,13 @@ TargetVoxels gridVoxels(const Field& field, std::span<const std::byte> bytes, co
         throw DataError(path, "its grid lies elsewhere than the field's",
                         "make it with 'lumorph voxelize --like' that field");
     return {bitsOf(grid), {}, 0.0, {}};
+}
+
+/// With the warnings of its file before its own.
+Target targetOf(TriangleMesh mesh, const std::vector<std::string>& warnings) {
+    Target target = makeTarget(std::move(mesh));
+    target.warnings.insert(target.warnings.begin(), warnings.begin(), warnings.end());
+    return target;
 }
 
 /// The mesh as it is: a surface needs no repair.
@@ -89,7 +96,7 @@ Target readTargetMesh(const Session& session, const std::string& path) {
     std::vector<std::string> warnings;
     TriangleMesh mesh =
         path == "-" ? parseMesh(session.readInput(path), inputName(path), warnings) : readMesh(path, &warnings);
-    return makeTarget(std::move(mesh), std::move(warnings));
+    return targetOf(std::move(mesh), warnings);
 }
 
 TargetVoxels readTarget(const Session& session, const Field& field, const TargetArguments& arguments) {
@@ -106,7 +113,7 @@ TargetVoxels readTarget(const Session& session, const Field& field, const Target
     std::vector<std::string> warnings;
     TriangleMesh mesh = arguments.path == "-" ? parseMesh(bytes, name, warnings) : readMesh(arguments.path, &warnings);
     if (arguments.surface) return surfaceVoxels(field, std::move(mesh), std::move(warnings), arguments.fit);
-    const Target target = makeTarget(std::move(mesh), std::move(warnings));
+    const Target target = targetOf(std::move(mesh), warnings);
     std::optional<Placement> placement;
     if (arguments.fit) placement = fitPlacement(field, boundingBox(target.mesh.positions));
     return voxelsOf(session, field, target, placement, arguments.repeat);

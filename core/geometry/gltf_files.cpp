@@ -6,7 +6,7 @@
 #include <string_view>
 #include <system_error>
 
-#include "core/base/text.h"
+#include "core/base/plain_text.h"
 #include "core/geometry/gltf_source.h"
 #include "core/geometry/mesh_file.h"
 

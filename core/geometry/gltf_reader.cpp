@@ -1,13 +1,14 @@
+#include "core/geometry/gltf_reader.h"
+
 #include <cmath>
 #include <limits>
 
 #include <glm/gtc/type_ptr.hpp>
 
 #include "core/base/error.h"
-#include "core/base/text.h"
+#include "core/base/plain_text.h"
 #include "core/geometry/gltf_parts.h"
 #include "core/geometry/mesh_file.h"
-#include "core/geometry/model.h"
 
 namespace lumorph {
 
@@ -103,44 +104,49 @@ std::vector<std::string> extensionWarnings(const json& document) {
     return warnings;
 }
 
-Model readDocument(const Container& container, const Folder& folder, std::size_t sourceBytes, const std::string& file) {
+ReadModel readDocument(const Container& container, const Folder& folder, std::size_t sourceBytes,
+                       const std::string& file) {
     const json document = parseBounded(container.json, file);
     const tinygltf::Model structure = structureOf(document, file);
     const Buffers buffers = readBuffers(document, container, folder, file);
     for (const std::vector<std::byte>& owned : buffers.owned) sourceBytes += owned.size();
     MemoryBudget budget(file, sourceBytes);
     const Accessors accessors(structure, buffers, budget, file);
-    Model model;
-    model.warnings = extensionWarnings(document);
-    const Source source{document, structure, accessors, model.warnings};
+    ReadModel read{{}, extensionWarnings(document)};
+    const Source source{document, structure, accessors, read.warnings};
 
-    model.images = readImages(document, structure, buffers, folder, budget, file, model.warnings);
+    Model& model = read.model;
+    model.images = readImages(document, structure, buffers, folder, budget, file, read.warnings);
     for (std::size_t i = 0; i < structure.materials.size(); ++i)
         model.materials.push_back(readMaterial(source, i, model.images.size()));
     model.meshes = readMeshes(source);
     readScene(source, model);
     model.extras = documentExtras(source);
-    return model;
+    return read;
 }
 
 } // namespace
 } // namespace gltf
 
-Model readModel(const std::filesystem::path& file) {
+ReadModel readModelFile(const std::filesystem::path& file) {
     const std::string name = file.string();
     const std::vector<std::byte> bytes = gltf::readFile(file, kMaxFileBytes, name);
     const PlainText text(bytes);
     const gltf::Container container = gltf::splitFile(bytes, text.view(), file);
-    Model model = gltf::readDocument(container, gltf::Folder(file.parent_path()), bytes.size(), name);
-    if (model.name.empty()) model.name = file.stem().string();
-    return model;
+    ReadModel read = gltf::readDocument(container, gltf::Folder(file.parent_path()), bytes.size(), name);
+    if (read.model.name.empty()) read.model.name = file.stem().string();
+    return read;
 }
 
-Model readGlb(std::span<const std::byte> bytes, const std::string& name) {
+Model readModel(const std::filesystem::path& file) { return readModelFile(file).model; }
+
+ReadModel readGlbBytes(std::span<const std::byte> bytes, const std::string& name) {
     if (bytes.size() > kMaxFileBytes)
         gltf::refuse(name, "is larger than " + std::to_string(kMaxFileBytes >> 20) + " MiB",
                      "split the model into parts");
     return gltf::readDocument(gltf::splitGlb(bytes, name), gltf::Folder(), bytes.size(), name);
 }
+
+Model readGlb(std::span<const std::byte> bytes, const std::string& name) { return readGlbBytes(bytes, name).model; }
 
 } // namespace lumorph

@@ -1,19 +1,18 @@
 #include "core/geometry/mesh_file_gltf.h"
 
 #include "core/base/error.h"
-#include "core/geometry/model.h"
+#include "core/geometry/gltf_reader.h"
 
 namespace lumorph {
 
 TriangleMesh readGltfMesh(const std::filesystem::path& file, std::vector<std::string>& warnings) {
-    const Model model = readModel(file);
-    TriangleMesh mesh = flatten(model);
+    const ReadModel read = readModelFile(file);
+    TriangleMesh mesh = flatten(read.model);
     if (mesh.empty())
         throw DataError(file.string(),
-                        "holds no mesh" +
-                            (model.warnings.empty() ? std::string() : " (" + model.warnings.front() + ")"),
+                        "holds no mesh" + (read.warnings.empty() ? std::string() : " (" + read.warnings.front() + ")"),
                         "export the model as a surface of polygons");
-    warnings.insert(warnings.end(), model.warnings.begin(), model.warnings.end());
+    warnings.insert(warnings.end(), read.warnings.begin(), read.warnings.end());
     return mesh;
 }
 

@@ -87,7 +87,7 @@ struct Model {
         [[nodiscard]] double duration() const noexcept; ///< seconds
         bool operator==(const Animation&) const = default;
     };
-    /// A picture still in its file form (PNG or JPEG), not decoded; without bytes where it could not be read.
+    /// A picture still in its file form (PNG or JPEG), not decoded.
     struct Image {
         std::string name;
         std::string mimeType;
@@ -121,18 +121,13 @@ struct Model {
     std::vector<Material> materials;
     std::vector<Image> images;
     nlohmann::json extras; ///< of the asset; of the default scene too, where the asset has no such key
-    /// What of the file was passed over or could not be read, in plain sentences. Not written.
-    std::vector<std::string> warnings;
 
     bool operator==(const Model&) const = default;
 };
 
 /// Reads `.gltf` or `.glb`. Buffers and images beside the file are read, but only inside its folder.
 /// Of what glTF can hold, cameras, lights, further texture coordinates and joint sets, texture transforms, points and
-/// lines are left out. A picture that cannot be read, and extensions that only change how it looks, are no reason to
-/// leave the geometry out: `warnings` names them. Hidden nodes (KHR_node_visibility) keep no mesh, and each copy of a
-/// node that is drawn many times (EXT_mesh_gpu_instancing) becomes a node of its own.
-/// Throws DataError naming the file, the place in it and the remedy.
+/// lines are left out. Throws DataError naming the file, the place in it and the remedy.
 [[nodiscard]] Model readModel(const std::filesystem::path& file);
 
 /// Reads a GLB held in memory; nothing outside it is opened. `name` stands in errors.

@@ -1,3 +1,4 @@
+#include "core/base/plain_text.h"
 #include "core/base/text.h"
 #include "core/geometry/mesh_parsers.h"
 

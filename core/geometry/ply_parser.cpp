@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/base/error.h"
+#include "core/base/plain_text.h"
 #include "core/base/text.h"
 #include "core/geometry/binary_reader.h"
 #include "core/geometry/mesh_builder.h"

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "core/base/error.h"
+#include "core/geometry/gltf_reader.h"
 #include "core/geometry/mesh_check.h"
 #include "core/geometry/mesh_file.h"
 
@@ -56,11 +57,10 @@ void checkVolume(const MatchTarget& target, const std::string& file) {
 }
 
 /// A mesh that moves is used as it is: a repair would hold for one of its poses only.
-Target movingTarget(TriangleMesh mesh, std::vector<std::string> warnings) {
-    if (isClosedSolid(mesh)) return {std::move(mesh), true, std::move(warnings)};
-    Target target{std::move(mesh), false, std::move(warnings)};
-    const std::vector<std::string> findings = checkMesh(target.mesh, IntersectionTest::skip).findings();
-    target.warnings.insert(target.warnings.end(), findings.begin(), findings.end());
+Target movingTarget(TriangleMesh mesh) {
+    if (isClosedSolid(mesh)) return {std::move(mesh), true, {}};
+    Target target{std::move(mesh), false, {}};
+    target.warnings = checkMesh(target.mesh, IntersectionTest::skip).findings();
     target.warnings.emplace_back("The animated target is not a closed solid; what counts as inside is estimated by "
                                  "winding numbers in every frame, which makes matching slower and may differ near the "
                                  "holes. Close it in a modeller.");
@@ -75,34 +75,34 @@ void measureAnimation(MatchTarget& target, const Model::Animation& animation, co
                                   progress.part(0.5, 1.0));
 }
 
-MatchTarget targetOfModel(std::shared_ptr<const Model> model, const std::string& file, std::optional<int> wish,
-                          const Progress& progress) {
+MatchTarget targetOfModel(std::shared_ptr<const Model> model, const std::vector<std::string>& warnings,
+                          const std::string& file, std::optional<int> wish, const Progress& progress) {
     MatchTarget target;
     const int index = chosenAnimation(*model, wish, file);
     const Model::Animation* animation = index < 0 ? nullptr : &model->animations[static_cast<std::size_t>(index)];
     TriangleMesh mesh = animation ? flatten(*model, *animation, 0.0) : flatten(*model);
-    checkTriangles(mesh.triangles.size(), model->warnings, file);
+    checkTriangles(mesh.triangles.size(), warnings, file);
     progress.report(0.3, "looking the mesh over");
     target.name = model->name;
     target.model = std::move(model);
     target.duration = animation ? animation->duration() : 0.0;
     if (target.duration > 0.0) {
         target.animation = index;
-        target.solid = movingTarget(std::move(mesh), target.model->warnings);
+        target.solid = movingTarget(std::move(mesh));
         measureAnimation(target, *animation, progress);
     } else {
-        target.solid = makeTarget(std::move(mesh), target.model->warnings);
+        target.solid = makeTarget(std::move(mesh));
         target.box = boundingBox(target.solid.mesh.positions);
     }
     return target;
 }
 
-MatchTarget targetOfMesh(TriangleMesh mesh, std::vector<std::string> warnings, const std::string& file,
+MatchTarget targetOfMesh(TriangleMesh mesh, const std::vector<std::string>& warnings, const std::string& file,
                          const Progress& progress) {
     checkTriangles(mesh.triangles.size(), warnings, file);
     progress.report(0.3, "looking the mesh over");
     MatchTarget target;
-    target.solid = makeTarget(std::move(mesh), std::move(warnings));
+    target.solid = makeTarget(std::move(mesh));
     target.box = boundingBox(target.solid.mesh.positions);
     return target;
 }
@@ -114,23 +114,26 @@ std::shared_ptr<const MatchTarget> readMatchTarget(const std::filesystem::path& 
     progress.report(0.0, "reading the target");
     progress.throwIfCancelled();
     MatchTarget target;
+    std::vector<std::string> warnings; // of the file
     try {
         if (isGltf(file)) {
-            auto model = std::make_shared<const Model>(readModel(file));
+            ReadModel read = readModelFile(file);
+            warnings = std::move(read.warnings);
+            auto model = std::make_shared<const Model>(std::move(read.model));
             progress.throwIfCancelled();
-            target = targetOfModel(std::move(model), file.string(), animation, progress);
+            target = targetOfModel(std::move(model), warnings, file.string(), animation, progress);
         } else {
-            std::vector<std::string> warnings;
             TriangleMesh mesh = readMesh(file, &warnings);
             progress.throwIfCancelled();
-            target = targetOfMesh(std::move(mesh), std::move(warnings), file.string(), progress);
+            target = targetOfMesh(std::move(mesh), warnings, file.string(), progress);
         }
     } catch (const InvalidInput& error) {
         throw DataError(file.string(), error.why(), error.remedy());
     }
     checkVolume(target, file.string());
     if (!file.stem().empty()) target.name = file.stem().string();
-    target.warnings = target.solid.warnings;
+    target.warnings = std::move(warnings);
+    target.warnings.insert(target.warnings.end(), target.solid.warnings.begin(), target.solid.warnings.end());
     progress.report(1.0, "reading the target");
     return std::make_shared<const MatchTarget>(std::move(target));
 }

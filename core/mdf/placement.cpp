@@ -18,18 +18,16 @@ bool isClosedSolid(const TriangleMesh& mesh) {
     return report.closed() && report.manifold();
 }
 
-Target makeTarget(TriangleMesh mesh, std::vector<std::string> warnings) {
-    if (isClosedSolid(mesh)) return {std::move(mesh), true, std::move(warnings)};
+Target makeTarget(TriangleMesh mesh) {
+    if (isClosedSolid(mesh)) return {std::move(mesh), true, {}};
     MeshRepair repair = repairMesh(mesh);
     if (repair.after.closed() && repair.after.manifold()) {
-        Target target{std::move(repair.mesh), true, std::move(warnings)};
-        target.warnings.emplace_back("The target was no closed solid and has been repaired for matching.");
+        Target target{
+            std::move(repair.mesh), true, {"The target was no closed solid and has been repaired for matching."}};
         target.warnings.insert(target.warnings.end(), repair.actions.begin(), repair.actions.end());
         return target;
     }
-    Target target{std::move(mesh), false, std::move(warnings)};
-    const std::vector<std::string> findings = repair.before.findings();
-    target.warnings.insert(target.warnings.end(), findings.begin(), findings.end());
+    Target target{std::move(mesh), false, repair.before.findings()};
     target.warnings.emplace_back("The target is not a closed solid; what counts as inside is estimated by winding "
                                  "numbers, which is slower and may differ near the holes.");
     return target;

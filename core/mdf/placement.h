@@ -23,9 +23,8 @@ struct Target {
 };
 
 /// Looks at the mesh once, so that voxelising it every frame need not. One that is not closed is
-/// repaired where that is safe (`repairMesh`) and stays open where it is not; the warnings say so, after those of its
-/// file.
-[[nodiscard]] Target makeTarget(TriangleMesh mesh, std::vector<std::string> warnings = {});
+/// repaired where that is safe (`repairMesh`) and stays open where it is not; the warnings say so.
+[[nodiscard]] Target makeTarget(TriangleMesh mesh);
 
 /// Whether scan conversion can be trusted with a mesh as it is: closed, and two triangles an edge.
 [[nodiscard]] bool isClosedSolid(const TriangleMesh& mesh);

@@ -38,7 +38,8 @@ std::vector<LibraryTarget> readTargets(const std::vector<std::filesystem::path>&
         target.name = (twin ? files[k].filename() : files[k].stem()).string();
         std::vector<std::string> warnings;
         TriangleMesh mesh = readMesh(files[k], &warnings);
-        target.target = makeTarget(std::move(mesh), std::move(warnings));
+        target.target = makeTarget(std::move(mesh));
+        target.target.warnings.insert(target.target.warnings.begin(), warnings.begin(), warnings.end());
         target.box = boundingBox(target.target.mesh.positions);
         const glm::vec3 size = target.box.size();
         if (target.box.empty() || !(std::min({size.x, size.y, size.z}) > 0.0F))

@@ -8,6 +8,7 @@
 #include "core/base/error.h"
 #include "core/base/file.h"
 #include "core/base/json_check.h"
+#include "core/base/plain_text.h"
 #include "core/base/text.h"
 #include "core/scene/project_format.h"
 #include "core/scene/scene_assets.h"

@@ -14,7 +14,7 @@
 #include "core/base/error.h"
 #include "core/base/file.h"
 #include "core/base/json_check.h"
-#include "core/base/text.h"
+#include "core/base/plain_text.h"
 
 namespace lumorph::ambient {
 namespace {

@@ -7,6 +7,7 @@
 #include "app/applications/labyrinth/level.h"
 #include "core/base/error.h"
 #include "core/base/file.h"
+#include "core/base/plain_text.h"
 #include "core/base/resources.h"
 #include "core/base/text.h"
 

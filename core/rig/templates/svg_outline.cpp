@@ -10,6 +10,7 @@
 #include <glm/mat3x3.hpp>
 
 #include "core/base/error.h"
+#include "core/base/plain_text.h"
 #include "core/base/text.h"
 #include "core/rig/templates/sheet_outline.h"
 

@@ -7,7 +7,7 @@
 
 #include "core/base/error.h"
 #include "core/geometry/mesh_file.h"
-#include "core/mdf/placement.h"
+#include "core/loop/match_target.h"
 #include "tests/core/geometry/sample_mesh_files.h"
 #include "tests/core/temporary_folder.h"
 
@@ -105,8 +105,11 @@ TEST_F(ForeignMesh, TextInUtf16IsRead) {
 
 TEST_F(ForeignMesh, WarningsComeBeforeThoseOfTheTarget) {
     (void)read("tail.stl", prismStl("binary") + "\n");
-    const Target target = makeTarget(readMesh(folder / "tail.stl"), warnings);
-    EXPECT_EQ(target.warnings, warnings);
+    EXPECT_EQ(readMatchTarget(folder / "tail.stl")->warnings, warnings);
+    std::ofstream(folder / "hole.ply") << plyOf("0 0 0 1\n3 0 0\n0 2 0\n0 0 1\n", "3 0 2 1\n3 0 1 3\n3 1 2 3\n0\n");
+    const std::vector<std::string> both = readMatchTarget(folder / "hole.ply")->warnings;
+    ASSERT_GE(both.size(), 2U);
+    EXPECT_THAT(both.front(), HasSubstr("1 line holds more"));
 }
 
 /// Small inputs of ../shared/data/cases, whose right values stand in FACTS.md there.

@@ -11,7 +11,7 @@
 #include "core/base/error.h"
 #include "core/base/file.h"
 #include "core/base/resources.h"
-#include "core/geometry/model.h"
+#include "core/geometry/gltf_reader.h"
 #include "core/rig/rig_file.h"
 #include "tests/core/file_size_limit.h"
 #include "tests/core/temporary_folder.h"
@@ -192,7 +192,7 @@ TEST_F(TakeAsset, AGltfBringsWhatItNamesInAnotherFormOrCase) {
     write(source / "cow.gltf", builder.document.dump());
     EXPECT_EQ(takeAsset(project, source / "cow.gltf"), "fish files/cow/cow.gltf");
     EXPECT_TRUE(readModel(home / "fish files/cow/cow.gltf") == readModel(source / "cow.gltf"));
-    EXPECT_THAT(readModel(home / "fish files/cow/cow.gltf").warnings, ::testing::IsEmpty());
+    EXPECT_THAT(readModelFile(home / "fish files/cow/cow.gltf").warnings, ::testing::IsEmpty());
 }
 
 TEST_F(TakeAsset, AnAssetIsFoundInAnotherFormOrCaseAndItsNearNameTold) {
