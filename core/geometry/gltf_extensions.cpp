@@ -73,12 +73,9 @@ std::vector<Model::Node> instancesOf(const Source& source, std::size_t node) {
     return copies;
 }
 
-std::optional<PointedNode> pointedNode(const Source& source, std::size_t animation, std::size_t channel) {
-    const json& list = source.document["animations"][animation]["channels"];
-    // One that could not be read at all was left out, so that the numbers do not agree.
-    if (list.size() != source.structure.animations[animation].channels.size()) return std::nullopt;
-    const auto target = list[channel].find("target");
-    if (target == list[channel].end() || !target->is_object()) return std::nullopt;
+std::optional<PointedNode> pointedNode(const json& channel) {
+    const auto target = channel.is_object() ? channel.find("target") : channel.end();
+    if (target == channel.end() || !target->is_object()) return std::nullopt;
     const json& pointing = extensionOf(*target, "KHR_animation_pointer");
     if (!pointing.is_object()) return std::nullopt;
     const std::string pointer = stringMember(pointing, "pointer");

@@ -1,4 +1,4 @@
-#include "core/geometry/gltf_source.h"
+#include "core/geometry/gltf_parts.h"
 
 #include <algorithm>
 #include <array>
@@ -103,6 +103,15 @@ constexpr std::array<Kind, 9> kStructure = {{{"accessors", "accessor"},
                                              {"animations", "animation"},
                                              {"skins", "skin"}}};
 
+/// Channels that point at nodes become channels that name them.
+void aimAtNodes(const json& animation, json& copy) {
+    const auto channels = animation.find("channels");
+    if (channels == animation.end() || !channels->is_array()) return;
+    for (std::size_t k = 0; k < channels->size(); ++k)
+        if (const auto pointed = pointedNode((*channels)[k]))
+            copy["channels"][k]["target"] = {{"node", pointed->node}, {"path", pointed->path}};
+}
+
 json structureJson(const json& document, const std::string& file) {
     json structure = {{"asset", {{"version", "2.0"}}}};
     for (const Kind& kind : kStructure) {
@@ -117,6 +126,7 @@ json structureJson(const json& document, const std::string& file) {
             const std::string place = std::string(kind.element) + " " + std::to_string(i);
             if (!(*list)[i].is_object()) refuse(file, place + ": is not an object");
             copy.push_back(stripped((*list)[i], place, file));
+            if (kind.list == std::string_view("animations")) aimAtNodes((*list)[i], copy.back());
         }
     }
     if (const auto scene = document.find("scene"); scene != document.end()) {

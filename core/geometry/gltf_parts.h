@@ -37,13 +37,13 @@ struct Source {
 /// EXT_mesh_gpu_instancing: where the copies of a node's mesh stand in the node's frame; none where it is shown once.
 [[nodiscard]] std::vector<Model::Node> instancesOf(const Source& source, std::size_t node);
 
-/// KHR_animation_pointer: a channel's target as the specification without it writes it; nothing where it moves
-/// something else than a node.
+/// KHR_animation_pointer: the target of a channel of the document as the specification without it writes it; nothing
+/// where it moves something else than a node.
 struct PointedNode {
     int node = -1;
     std::string path;
 };
-[[nodiscard]] std::optional<PointedNode> pointedNode(const Source& source, std::size_t animation, std::size_t channel);
+[[nodiscard]] std::optional<PointedNode> pointedNode(const nlohmann::json& channel);
 
 /// The picture of a texture, also of one that only an extension names; -1 for none.
 [[nodiscard]] int pictureOf(const Source& source, std::size_t texture, std::size_t images, const std::string& place);

@@ -2,13 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
 
 #include <glm/gtc/type_ptr.hpp>
 
 #include "core/geometry/mesh_file.h"
 
 namespace lumorph::gltf {
+
+using nlohmann::json;
 
 namespace {
 
@@ -228,24 +229,22 @@ private:
         const tinygltf::Animation& from = structure_.animations[index];
         Model::Animation animation;
         animation.name = from.name;
+        std::size_t aimedAtNodes = 0;
         for (std::size_t i = 0; i < from.channels.size(); ++i) {
             const std::string place = "animation " + std::to_string(index) + " channel " + std::to_string(i);
-            tinygltf::AnimationChannel target = from.channels[i];
-            // A channel without a node moves something that an extension brought in, or points at a node.
-            if (target.target_node < 0) {
-                const std::optional<PointedNode> pointed = pointedNode(source_, index, i);
-                if (!pointed) {
-                    ++passedOver_;
-                    continue;
-                }
-                target.target_node = pointed->node;
-                target.target_path = pointed->path;
-            }
+            const tinygltf::AnimationChannel& target = from.channels[i];
+            // A channel without a node moves something that an extension brought in.
+            if (target.target_node < 0) continue;
             // The weights of a mesh that is hidden move nothing.
             const int aimed = source_.checked(target.target_node, place_.size(), place, "node");
+            ++aimedAtNodes;
             if (target.target_path == "weights" && hidden_[static_cast<std::size_t>(aimed)]) continue;
             animation.channels.push_back(channel(from, target, place));
         }
+        // Those that could not be read at all are missing among the others.
+        const json& all = source_.document["animations"][index];
+        const auto channels = all.find("channels");
+        if (channels != all.end() && channels->size() > aimedAtNodes) passedOver_ += channels->size() - aimedAtNodes;
         return animation;
     }
 
