@@ -188,18 +188,25 @@ bool isRead(const tinygltf::Primitive& primitive) {
 class CrowdedViews {
 public:
     explicit CrowdedViews(const tinygltf::Model& structure)
-        : structure_(structure), asked_(structure.bufferViews.size(), 0.0) {
+        : structure_(structure), asked_(structure.bufferViews.size()) {
         for (const tinygltf::Mesh& mesh : structure.meshes)
             for (const tinygltf::Primitive& primitive : mesh.primitives)
-                if (const std::optional<std::size_t> view = viewOf(primitive))
-                    asked_[*view] += bytesOf(primitive, *view);
+                if (const std::optional<std::size_t> view = viewOf(primitive)) {
+                    asked_[*view].bytes += bytesOf(primitive, *view);
+                    ++asked_[*view].primitives;
+                }
     }
     [[nodiscard]] bool hold(const tinygltf::Primitive& primitive) const {
         const std::optional<std::size_t> view = viewOf(primitive);
-        return view && asked_[*view] > static_cast<double>(structure_.bufferViews[*view].byteLength);
+        return view && asked_[*view].primitives > 1 &&
+               asked_[*view].bytes > static_cast<double>(structure_.bufferViews[*view].byteLength);
     }
 
 private:
+    struct Asked {
+        double bytes = 0.0;
+        std::size_t primitives = 0;
+    };
     [[nodiscard]] const tinygltf::Accessor* positionsOf(const tinygltf::Primitive& primitive) const {
         if (!isRead(primitive)) return nullptr;
         const int accessor = primitive.attributes.at("POSITION");
@@ -221,7 +228,7 @@ private:
     }
 
     const tinygltf::Model& structure_;
-    std::vector<double> asked_; ///< bytes
+    std::vector<Asked> asked_; ///< of each buffer view
 };
 
 /// A mesh that is stored compressed only would be read as if all its vertices were at the origin.
