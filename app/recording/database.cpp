@@ -120,7 +120,10 @@ Database::Database(const std::filesystem::path& file, Mode mode) : file_(file.st
         throw DeviceError(file_, "there is a file of this name", "choose another name, or move that file away");
     if (mode == Mode::readOnly && !std::filesystem::is_regular_file(file))
         throw DataError(file_, "there is no such file", "check the name");
-    if (mode == Mode::readOnly) return openToRead(file);
+    if (mode == Mode::readOnly) {
+        openToRead(file);
+        return;
+    }
     sqlite3* opened = nullptr;
     constexpr int kFlags = SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE | SQLITE_OPEN_NOMUTEX;
     const int result = sqlite3_open_v2(file_.c_str(), &opened, kFlags, nullptr);
