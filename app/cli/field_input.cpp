@@ -7,9 +7,9 @@
 
 #include "core/base/error.h"
 #include "core/base/statistics.h"
+#include "core/geometry/gltf_reader.h"
 #include "core/geometry/mesh_file.h"
 #include "core/geometry/mesh_parsers.h"
-#include "core/geometry/model.h"
 #include "core/voxels/nrrd.h"
 #include "core/voxels/surface.h"
 
@@ -28,10 +28,13 @@ bool beginsWith(std::span<const std::byte> bytes, std::string_view magic) {
                       [](char a, std::byte b) { return std::byte(static_cast<unsigned char>(a)) == b; });
 }
 
-TriangleMesh parseMesh(std::span<const std::byte> bytes, const std::string& name) {
+/// What is passed over of it is added to `warnings`.
+TriangleMesh parseMesh(std::span<const std::byte> bytes, const std::string& name, std::vector<std::string>& warnings) {
     if (!beginsWith(bytes, "glTF")) return parseObj(bytes, name);
-    TriangleMesh mesh = flatten(readGlb(bytes, name));
+    const ReadModel read = readGlbBytes(bytes, name);
+    TriangleMesh mesh = flatten(read.model);
     if (mesh.empty()) throw DataError(name, "holds no mesh", "export the model as a surface of polygons");
+    warnings.insert(warnings.end(), read.warnings.begin(), read.warnings.end());
     return mesh;
 }
 
@@ -50,10 +53,17 @@ TargetVoxels gridVoxels(const Field& field, std::span<const std::byte> bytes, co
     return {bitsOf(grid), {}, 0.0, {}};
 }
 
+/// With the warnings of its file before its own.
+Target targetOf(TriangleMesh mesh, const std::vector<std::string>& warnings) {
+    Target target = makeTarget(std::move(mesh));
+    target.warnings.insert(target.warnings.begin(), warnings.begin(), warnings.end());
+    return target;
+}
+
 /// The mesh as it is: a surface needs no repair.
-TargetVoxels surfaceVoxels(const Field& field, TriangleMesh mesh, bool fit) {
+TargetVoxels surfaceVoxels(const Field& field, TriangleMesh mesh, std::vector<std::string> warnings, bool fit) {
     if (fit) mesh = placed(mesh, fitPlacement(field, boundingBox(mesh.positions)));
-    TargetVoxels voxels{voxelizeSurface(field.frame, mesh), std::move(mesh), 0.0, {}};
+    TargetVoxels voxels{voxelizeSurface(field.frame, mesh), std::move(mesh), 0.0, std::move(warnings)};
     if (voxels.bits.count() == 0)
         voxels.warnings.emplace_back("the mesh lies beyond the space the device can show; use --fit.");
     return voxels;
@@ -83,8 +93,10 @@ TargetVoxels voxelsOf(const Session& session, const Field& field, const Target& 
 }
 
 Target readTargetMesh(const Session& session, const std::string& path) {
-    if (path == "-") return makeTarget(parseMesh(session.readInput(path), inputName(path)));
-    return makeTarget(readMesh(path));
+    std::vector<std::string> warnings;
+    TriangleMesh mesh =
+        path == "-" ? parseMesh(session.readInput(path), inputName(path), warnings) : readMesh(path, &warnings);
+    return targetOf(std::move(mesh), warnings);
 }
 
 TargetVoxels readTarget(const Session& session, const Field& field, const TargetArguments& arguments) {
@@ -98,9 +110,10 @@ TargetVoxels readTarget(const Session& session, const Field& field, const Target
             throw InvalidInput("--surface", "a voxel grid has no surface to look at", "give the mesh");
         return gridVoxels(field, bytes, name);
     }
-    TriangleMesh mesh = arguments.path == "-" ? parseMesh(bytes, name) : readMesh(arguments.path);
-    if (arguments.surface) return surfaceVoxels(field, std::move(mesh), arguments.fit);
-    const Target target = makeTarget(std::move(mesh));
+    std::vector<std::string> warnings;
+    TriangleMesh mesh = arguments.path == "-" ? parseMesh(bytes, name, warnings) : readMesh(arguments.path, &warnings);
+    if (arguments.surface) return surfaceVoxels(field, std::move(mesh), std::move(warnings), arguments.fit);
+    const Target target = targetOf(std::move(mesh), warnings);
     std::optional<Placement> placement;
     if (arguments.fit) placement = fitPlacement(field, boundingBox(target.mesh.positions));
     return voxelsOf(session, field, target, placement, arguments.repeat);

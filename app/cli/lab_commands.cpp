@@ -1,6 +1,12 @@
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <charconv>
+#include <cmath>
 #include <cstdio>
 #include <memory>
 #include <string>
+#include <string_view>
 
 #include "app/cli/checks.h"
 #include "app/cli/commands.h"
@@ -41,7 +47,44 @@ std::optional<Cause> faultOf(const std::string& key) {
     return cause;
 }
 
-/// Boards are named in millimetres. One that is larger than the lab's lit place is taken as printed smaller.
+/// A word as a shell reads it back: in single quotes where it needs them.
+std::string shellWord(const std::string& text) {
+    const auto isPlain = [](unsigned char c) {
+        return std::isalnum(c) != 0 || c >= 0x80 ||
+               std::string_view("_-./:,=+@%").find(static_cast<char>(c)) != std::string_view::npos;
+    };
+    if (!text.empty() && std::ranges::all_of(text, isPlain)) return text;
+    std::string quoted = "'";
+    for (const char c : text) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
+    return quoted + "'";
+}
+
+/// The same for a path: one that begins with a dash would be an option.
+std::string shellPath(const std::string& path) { return shellWord(path.starts_with('-') ? "./" + path : path); }
+
+std::string shortest(double value) {
+    std::array<char, 32> digits{};
+    return {digits.data(), std::to_chars(digits.data(), digits.data() + digits.size(), value).ptr};
+}
+
+/// The words of a board whose lengths, all behind its size, are other ones.
+std::string scaledBoard(const std::string& board, double scale) {
+    std::string words;
+    std::size_t part = 0;
+    for (std::size_t from = 0; from <= board.size(); ++part) {
+        const std::size_t end = std::min(board.find(':', from), board.size());
+        const std::string text = board.substr(from, end - from);
+        double length = 0.0;
+        const auto [stop, error] = std::from_chars(text.data(), text.data() + text.size(), length);
+        const bool isLength = part >= 2 && error == std::errc() && stop == text.data() + text.size();
+        words += (part > 0 ? ":" : "") + (isLength ? shortest(scale * length) : text);
+        from = end + 1;
+    }
+    return words;
+}
+
+/// Boards are named in millimetres. One that is larger than the lab's lit place is taken as printed smaller, and named
+/// so.
 std::unique_ptr<LabCapturer> capturerOf(LabCapture capture) {
     try {
         return std::make_unique<LabCapturer>(capture);
@@ -50,11 +93,12 @@ std::unique_ptr<LabCapturer> capturerOf(LabCapture capture) {
         const double longest = board.spacing * (std::max(board.columns, board.rows) + 2) * 0.001;
         constexpr double kFits = 0.29; // metres
         if (longest <= kFits) throw;
-        capture.options.metresPerUnit *= kFits / longest;
+        // A spacing of whole micrometres is read back as it is written.
+        const double scale = 0.001 * std::floor(1000.0 * board.spacing * kFits / longest) / board.spacing;
+        capture.board = scaledBoard(capture.board, scale);
         auto capturer = std::make_unique<LabCapturer>(capture);
-        printWarnings({"The board is larger than what the lab's projector lights, so it is taken as printed smaller: "
-                       "one unit of its name is " +
-                       std::to_string(1000.0 * capture.options.metresPerUnit) + " mm."});
+        printWarnings({"The board is larger than what the lab's projector lights, so it is taken as printed smaller: " +
+                       capture.board + "."});
         return capturer;
     }
 }
@@ -104,8 +148,9 @@ void captureDevice(const LabArguments& arguments, const Session& session) {
     }
     std::printf("%zu shots of %s in %s; the truth is in truth.json\n", shots, rig.name().c_str(),
                 arguments.output.c_str());
-    std::printf("  lumorph calibrate device %s --rig %s --projector %dx%d --pattern %s\n", arguments.output.c_str(),
-                arguments.device.c_str(), projector.x, projector.y, arguments.pattern.c_str());
+    std::printf("  lumorph calibrate device %s --rig %s --projector %dx%d --pattern %s\n",
+                shellPath(arguments.output).c_str(), shellPath(arguments.device).c_str(), projector.x, projector.y,
+                shellWord(arguments.pattern).c_str());
 }
 
 void capture(const LabArguments& arguments, const Session& session) {
@@ -121,22 +166,24 @@ void capture(const LabArguments& arguments, const Session& session) {
     capture.seed = arguments.seed;
     capture.fault = faultOf(arguments.fault);
     const std::unique_ptr<LabCapturer> capturer = capturerOf(capture);
+    const std::string& board = capturer->capture().board;
     writeLabCapture(*capturer, arguments.output, session.progress());
     Session::endProgress();
     const CalibratedCamera& projector = capturer->lab().projector().camera;
     if (arguments.json) {
         printJson({{"folder", arguments.output},
                    {"poses", arguments.poses},
-                   {"board", arguments.board},
+                   {"board", board},
                    {"pattern", arguments.pattern},
                    {"projector", {projector.size.x, projector.size.y}},
                    {"truth", arguments.output + "/truth.json"}});
         return;
     }
-    std::printf("%d poses of %s in %s; the truth is in truth.json\n", arguments.poses, arguments.board.c_str(),
+    std::printf("%d poses of %s in %s; the truth is in truth.json\n", arguments.poses, board.c_str(),
                 arguments.output.c_str());
-    std::printf("  lumorph calibrate procam %s --board %s --projector %dx%d --pattern %s\n", arguments.output.c_str(),
-                arguments.board.c_str(), projector.size.x, projector.size.y, arguments.pattern.c_str());
+    std::printf("  lumorph calibrate procam %s --board %s --projector %dx%d --pattern %s\n",
+                shellPath(arguments.output).c_str(), shellWord(board).c_str(), projector.size.x, projector.size.y,
+                shellWord(arguments.pattern).c_str());
 }
 
 } // namespace

@@ -9,6 +9,7 @@
 #include "app/cli/match_picture.h"
 #include "core/base/error.h"
 #include "core/base/statistics.h"
+#include "core/geometry/gltf_reader.h"
 #include "core/geometry/mesh_file.h"
 #include "core/mdf/auto_place.h"
 #include "core/mdf/clip.h"
@@ -197,8 +198,9 @@ const Model::Animation& chooseAnimation(const Model& model, const std::string& p
 }
 
 void matchAnimation(const Matcher& matcher, const MatchArguments& arguments, const Session& session) {
-    const Model model = readModel(arguments.target.path);
+    const auto [model, warnings] = readModelFile(arguments.target.path);
     const Model::Animation& animation = chooseAnimation(model, arguments.target.path, arguments.animation);
+    printWarnings(warnings);
     ClipOptions options;
     options.framesPerSecond = arguments.framesPerSecond;
     options.refined = arguments.method == "refined";

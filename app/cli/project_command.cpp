@@ -106,7 +106,9 @@ private:
     }
 
     AssetReport readTargetAsset(const std::filesystem::path& path) {
-        const TriangleMesh mesh = readMesh(path);
+        std::vector<std::string> warnings;
+        const TriangleMesh mesh = readMesh(path, &warnings);
+        printWarnings(warnings);
         const std::size_t animations = isGltfFile(path) ? readModel(path).animations.size() : 0;
         if (project_.animation > 0 && static_cast<std::size_t>(project_.animation) >= animations)
             throw DataError(file_,

@@ -16,12 +16,29 @@ struct RecordingArguments {
     bool json = false;
 };
 
+/// Read, and what is to be said of it said.
+Recording opened(const std::string& file) {
+    Recording recording = readRecording(file);
+    printWarnings(recording.warnings);
+    return recording;
+}
+
+/// When it began; what older versions recorded names no zone.
+std::string beginOf(const Recording& recording) {
+    const auto started = recording.facts.find("started");
+    if (started == recording.facts.end()) return {};
+    const std::size_t clock = started->second.find('T');
+    const bool zoned = clock != std::string::npos && started->second.find_first_of("+-Z", clock) != std::string::npos;
+    return ", begun " + started->second + (zoned ? "" : " by the clock of the machine that recorded it");
+}
+
 void printRecording(const RecordingArguments& arguments) {
-    const Recording recording = readRecording(arguments.file);
+    const Recording recording = opened(arguments.file);
     const double seconds = secondsOf(recording);
     if (arguments.json) {
         nlohmann::json facts(recording.facts);
         printJson({{"seconds", seconds},
+                   {"closed", recording.closed},
                    {"frames", recording.frames.size()},
                    {"poses", recording.poses.size()},
                    {"events", recording.events.size()},
@@ -29,7 +46,7 @@ void printRecording(const RecordingArguments& arguments) {
                    {"facts", facts}});
         return;
     }
-    std::printf("%s: a session of %.1f s\n", arguments.file.c_str(), seconds);
+    std::printf("%s: a session of %.1f s%s\n", arguments.file.c_str(), seconds, beginOf(recording).c_str());
     std::printf("  %zu frames, %zu poses, %zu rows of servo traffic\n", recording.frames.size(), recording.poses.size(),
                 recording.servo.size());
     for (const EventRow& event : recording.events)
@@ -72,7 +89,7 @@ void printTextOf(const RecordingCheck& check, const RecordingArguments& argument
 }
 
 void checkFile(const RecordingArguments& arguments) {
-    const Recording recording = readRecording(arguments.file);
+    const Recording recording = opened(arguments.file);
     RecordingCheck check;
     try {
         check = checkRecording(recording);
@@ -109,7 +126,7 @@ void addRecordingCommands(CLI::App& app) {
     check->add_option("recording", arguments->file, "A .lumorphrec file")->required();
     check->add_flag("--json", arguments->json, "Print one JSON value");
     check->callback([arguments] { checkFile(*arguments); });
-    table->callback([arguments] { exportCsv(readRecording(arguments->file), arguments->folder); });
+    table->callback([arguments] { exportCsv(opened(arguments->file), arguments->folder); });
 }
 
 } // namespace lumorph::cli

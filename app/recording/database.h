@@ -48,8 +48,18 @@ private:
 class Database {
 public:
     enum class Mode { readOnly, create };
-    /// `create` throws DeviceError for a file that is there already.
+    /// `create` throws DeviceError for a file that is there already. `readOnly` writes nothing, neither into the file
+    /// nor beside it.
     Database(const std::filesystem::path& file, Mode mode);
+
+    /// How a file was left that is read.
+    enum class Left {
+        closed,
+        open,       ///< its writer runs still
+        notClosed,  ///< its writer ended without closing it; what its log (FILE-wal) holds is read too
+        withoutLog, ///< the same, and its log is missing or empty
+    };
+    [[nodiscard]] Left left() const noexcept { return left_; }
 
     void run(const char* sql);
     [[nodiscard]] Statement prepare(std::string_view sql);
@@ -58,8 +68,11 @@ private:
     struct Close {
         void operator()(sqlite3* database) const;
     };
+    void openToRead(const std::filesystem::path& file);
+
     std::unique_ptr<sqlite3, Close> database_;
     std::string file_;
+    Left left_ = Left::closed;
 };
 
 } // namespace lumorph

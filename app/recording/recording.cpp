@@ -9,6 +9,7 @@
 #include "app/recording/database.h"
 #include "app/recording/session_tables.h"
 #include "core/base/error.h"
+#include "core/base/text.h"
 #include "core/scene/project_assets.h"
 
 namespace lumorph {
@@ -135,6 +136,21 @@ template <class Row> void sortByTime(std::vector<Row>& rows) {
     if (!std::ranges::is_sorted(rows, {}, &Row::time)) std::ranges::stable_sort(rows, {}, &Row::time);
 }
 
+std::string logName(const std::filesystem::path& file) { return inQuotes(file.filename().string() + "-wal"); }
+
+void sayHowItWasLeft(Database::Left left, const std::filesystem::path& file, Recording& recording) {
+    recording.closed = left == Database::Left::closed;
+    if (left == Database::Left::open)
+        recording.warnings.emplace_back("It is still being recorded; what has reached the disk is read.");
+    if (left == Database::Left::notClosed)
+        recording.warnings.emplace_back("It was not closed, so its recorder ended abruptly; all that reached the disk "
+                                        "is read, the last half second "
+                                        "may be missing.");
+    if (left == Database::Left::withoutLog)
+        recording.warnings.push_back("It was not closed, and its log " + logName(file) +
+                                     " is not beside it; what is in the file itself is read, its end may be missing.");
+}
+
 /// Gives the version.
 std::int64_t checkVersion(Database& database, const std::filesystem::path& file) {
     Statement version = database.prepare("PRAGMA user_version");
@@ -142,6 +158,11 @@ std::int64_t checkVersion(Database& database, const std::filesystem::path& file)
     if (found >= 1 && found <= kVersion) return found;
     if (found > kVersion)
         throw DataError(file.string(), "a newer Lumorph recorded it", "open it with that version, or update this one");
+    if (database.left() == Database::Left::withoutLog)
+        throw DataError(file.string(),
+                        "it was not closed, and its log " + logName(file) +
+                            ", in which all lies that was recorded, is not beside it",
+                        "copy that file too, from where it was recorded");
     throw DataError(file.string(), "it is a database, but no recording", "choose a file that Lumorph recorded");
 }
 
@@ -151,6 +172,7 @@ Recording readRecording(const std::filesystem::path& file, const Progress& progr
     Database database(file, Database::Mode::readOnly);
     const std::int64_t version = checkVersion(database, file);
     Recording recording;
+    sayHowItWasLeft(database.left(), file, recording);
     Statement facts = database.prepare("SELECT name, value FROM fact");
     while (facts.step()) recording.facts[facts.text(0)] = facts.text(1);
     Share share(database, progress);

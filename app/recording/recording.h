@@ -16,11 +16,15 @@ struct Recording {
     std::vector<FrameRow> frames; ///< this and the next two by time
     std::vector<PoseRow> poses;
     std::vector<EventRow> events;
-    std::vector<InputRow> inputs; ///< by time; empty in what an older version recorded
-    std::vector<ServoRow> servo;  ///< as it went in and came out
+    std::vector<InputRow> inputs;      ///< by time; empty in what an older version recorded
+    std::vector<ServoRow> servo;       ///< as it went in and came out
+    bool closed = true;                ///< its recorder ended it
+    std::vector<std::string> warnings; ///< where it did not: what that means, in plain sentences
 };
 
-/// Throws DataError that names file, table and row: no recording, a newer version's, damaged; Cancelled.
+/// One that was not closed is read as far as it reached the disk, with a warning; nothing is written, neither into the
+/// file nor beside it. Throws DataError that names file, table and row: no recording, a newer version's, damaged;
+/// Cancelled.
 [[nodiscard]] Recording readRecording(const std::filesystem::path& file, const Progress& progress = {});
 
 /// The files that the session's project needs. Throws as readRecording, also for a name that leaves their folder.

@@ -125,14 +125,21 @@ int Accessors::components(int accessor, const std::string& place) const {
     }
 }
 
-std::size_t Accessors::open(int accessor, int expected, const std::string& place) const {
+std::size_t Accessors::count(int accessor, const std::string& place) const {
+    (void)components(accessor, place);
+    const std::size_t count = structure_.accessors[static_cast<std::size_t>(accessor)].count;
+    if (count == 0) refuse(file_, named(accessor, place) + ": is empty");
+    return count;
+}
+
+std::size_t Accessors::open(int accessor, int expected, const std::string& place, Some some) const {
     if (const int found = components(accessor, place); found != expected)
         refuse(file_, named(accessor, place) + ": has " + std::to_string(found) + " components, not " +
                           std::to_string(expected));
-    const std::size_t count = structure_.accessors[static_cast<std::size_t>(accessor)].count;
-    if (count == 0) refuse(file_, named(accessor, place) + ": is empty");
-    budget_.charge(count, static_cast<std::size_t>(expected) * sizeof(float), named(accessor, place));
-    return count;
+    const std::size_t all = count(accessor, place);
+    const std::size_t wanted = some.empty() ? all : some.size();
+    budget_.charge(wanted, static_cast<std::size_t>(expected) * sizeof(float), named(accessor, place));
+    return wanted;
 }
 
 template <typename Out>
@@ -171,12 +178,20 @@ void Accessors::copySparse(int accessor, int components, Out* out, const std::st
 }
 
 template <typename Out>
-void Accessors::copyAll(int accessor, int components, Out* out, const std::string& place) const {
+void Accessors::copyWanted(int accessor, int components, Out* out, const std::string& place, Some some) const {
     const tinygltf::Accessor& source = structure_.accessors[static_cast<std::size_t>(accessor)];
     const std::size_t bytes = componentBytes(source.componentType) * static_cast<std::size_t>(components);
     // Nothing is copied here; it only asks whether the type can be.
     if (bytes == 0 || !copyAs(source.componentType, Elements{}, out))
         refuse(file_, place + ": component type " + std::to_string(source.componentType) + " has no place here");
+    const auto width = static_cast<std::size_t>(components);
+    if (!some.empty() && source.sparse.isSparse) {
+        budget_.charge(source.count, width * sizeof(Out), place);
+        std::vector<Out> all(source.count * width);
+        copyWanted(accessor, components, all.data(), place, {});
+        for (const std::uint32_t i : some) out = std::copy_n(all.data() + i * width, width, out);
+        return;
+    }
     // Without a buffer view, all values are zero; the memory was bounded before it was given.
     if (source.bufferView >= 0) {
         const auto view = viewBytes(structure_, buffers_, source.bufferView, place, file_);
@@ -184,33 +199,44 @@ void Accessors::copyAll(int accessor, int components, Out* out, const std::strin
         Elements elements = located(view, source.byteOffset, stride, bytes, source.count, place, file_);
         elements.components = components;
         elements.normalized = source.normalized;
-        copyAs(source.componentType, elements, out);
+        if (some.empty()) copyAs(source.componentType, elements, out);
+        elements.count = 1;
+        const std::byte* const first = elements.first;
+        for (std::size_t k = 0; k < some.size(); ++k) {
+            elements.first = first + some[k] * elements.stride;
+            copyAs(source.componentType, elements, out + k * width);
+        }
     }
     if (source.sparse.isSparse) copySparse(accessor, components, out, place);
 }
 
-void Accessors::fill(int accessor, int components, float* out, const std::string& place) const {
+void Accessors::fill(int accessor, int components, float* out, const std::string& place, Some some) const {
     const std::string where = named(accessor, place);
-    copyAll(accessor, components, out, where);
-    const std::size_t size =
-        structure_.accessors[static_cast<std::size_t>(accessor)].count * static_cast<std::size_t>(components);
-    const float* end = out + size;
+    copyWanted(accessor, components, out, where, some);
+    const std::size_t wanted =
+        some.empty() ? structure_.accessors[static_cast<std::size_t>(accessor)].count : some.size();
+    const float* end = out + wanted * static_cast<std::size_t>(components);
     const float* bad =
         std::find_if(static_cast<const float*>(out), end, [](float value) { return !std::isfinite(value); });
     if (bad != end)
-        refuse(file_, where + ": element " + std::to_string((bad - out) / components) + " is not a finite number",
+        refuse(file_,
+               where + ": element " +
+                   std::to_string(some.empty() ? (bad - out) / components
+                                               : some[static_cast<std::size_t>((bad - out) / components)]) +
+                   " is not a finite number",
                "remove the faulty vertices or keys in the modelling program and export again");
 }
 
-std::vector<float> Accessors::floats(int accessor, int components, const std::string& place) const {
-    std::vector<float> out(open(accessor, components, place) * static_cast<std::size_t>(components));
-    fill(accessor, components, out.data(), place);
+std::vector<float> Accessors::floats(int accessor, int components, const std::string& place, Some some) const {
+    std::vector<float> out(open(accessor, components, place, some) * static_cast<std::size_t>(components));
+    fill(accessor, components, out.data(), place, some);
     return out;
 }
 
-std::vector<std::uint32_t> Accessors::integers(int accessor, int components, const std::string& place) const {
-    std::vector<std::uint32_t> out(open(accessor, components, place) * static_cast<std::size_t>(components));
-    copyAll(accessor, components, out.data(), named(accessor, place));
+std::vector<std::uint32_t> Accessors::integers(int accessor, int components, const std::string& place,
+                                               Some some) const {
+    std::vector<std::uint32_t> out(open(accessor, components, place, some) * static_cast<std::size_t>(components));
+    copyWanted(accessor, components, out.data(), named(accessor, place), some);
     return out;
 }
 

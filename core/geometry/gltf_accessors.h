@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -11,7 +12,8 @@
 namespace lumorph::gltf {
 
 /// Reads typed values out of buffers, trusting nothing: every index, range and number is checked before it is used.
-/// `place` says in errors who asks. The references outlive the reader.
+/// `place` says in errors who asks. `some` are the elements that are wanted, each of them below count(); none: all. The
+/// references outlive the reader.
 class Accessors {
 public:
     Accessors(const tinygltf::Model& structure, const Buffers& buffers, MemoryBudget& budget, const std::string& file)
@@ -20,15 +22,22 @@ public:
     /// Numbers an element: 1 to 4, or 16 for a 4x4 matrix.
     [[nodiscard]] int components(int accessor, const std::string& place) const;
 
-    /// All values in file order, finite; integers of a normalised accessor become 0..1 or -1..1.
-    [[nodiscard]] std::vector<float> floats(int accessor, int components, const std::string& place) const;
-    [[nodiscard]] std::vector<std::uint32_t> integers(int accessor, int components, const std::string& place) const;
+    /// How many elements it has, at least one.
+    [[nodiscard]] std::size_t count(int accessor, const std::string& place) const;
+
+    using Some = std::span<const std::uint32_t>;
+    /// The values in file order, finite; integers of a normalised accessor become 0..1 or -1..1.
+    [[nodiscard]] std::vector<float> floats(int accessor, int components, const std::string& place,
+                                            Some some = {}) const;
+    [[nodiscard]] std::vector<std::uint32_t> integers(int accessor, int components, const std::string& place,
+                                                      Some some = {}) const;
 
     /// The same as glm vectors or matrices.
-    template <typename Vector> [[nodiscard]] std::vector<Vector> vectors(int accessor, const std::string& place) const {
+    template <typename Vector>
+    [[nodiscard]] std::vector<Vector> vectors(int accessor, const std::string& place, Some some = {}) const {
         constexpr int size = sizeof(Vector) / sizeof(float);
-        std::vector<Vector> out(open(accessor, size, place));
-        fill(accessor, size, glm::value_ptr(out.front()), place);
+        std::vector<Vector> out(open(accessor, size, place, some));
+        fill(accessor, size, glm::value_ptr(out.front()), place, some);
         return out;
     }
 
@@ -36,10 +45,11 @@ public:
     [[nodiscard]] const std::string& file() const noexcept { return file_; }
 
 private:
-    /// Number of elements, at least one; charges the budget for them.
-    [[nodiscard]] std::size_t open(int accessor, int components, const std::string& place) const;
-    void fill(int accessor, int components, float* out, const std::string& place) const;
-    template <typename Out> void copyAll(int accessor, int components, Out* out, const std::string& place) const;
+    /// Number of elements that are wanted, at least one; charges the budget for them.
+    [[nodiscard]] std::size_t open(int accessor, int components, const std::string& place, Some some) const;
+    void fill(int accessor, int components, float* out, const std::string& place, Some some) const;
+    template <typename Out>
+    void copyWanted(int accessor, int components, Out* out, const std::string& place, Some some) const;
     template <typename Out> void copySparse(int accessor, int components, Out* out, const std::string& place) const;
 
     const tinygltf::Model& structure_;

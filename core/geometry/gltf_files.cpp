@@ -1,16 +1,32 @@
 #include "core/geometry/gltf_files.h"
 
+#include <algorithm>
 #include <set>
+#include <string>
+#include <string_view>
+#include <system_error>
 
+#include "core/base/plain_text.h"
 #include "core/geometry/gltf_source.h"
 #include "core/geometry/mesh_file.h"
 
 namespace lumorph {
+namespace {
+
+/// The name under which a copy of the model finds the file: as it is written, with the slashes of this system.
+std::filesystem::path nameBeside(const std::string& uri, const std::filesystem::path& at) {
+    std::string name = gltf::percentDecoded(uri);
+    if (at.filename().native().find('\\') == std::string::npos) std::ranges::replace(name, '\\', '/');
+    return std::filesystem::path(name).lexically_normal();
+}
+
+} // namespace
 
 std::vector<ReferredFile> filesReferredBy(const std::filesystem::path& gltf) {
     const std::string subject = gltf.string();
     const std::vector<std::byte> bytes = gltf::readFile(gltf, kMaxFileBytes, subject);
-    const nlohmann::json document = gltf::parseBounded(gltf::splitFile(bytes, gltf).json, subject);
+    const PlainText text(bytes);
+    const nlohmann::json document = gltf::parseBounded(gltf::splitFile(bytes, text.view(), gltf).json, subject);
     const gltf::Folder folder(gltf.parent_path());
     std::vector<ReferredFile> files;
     std::set<std::filesystem::path> names{gltf.filename()}; // one that names itself is there already
@@ -21,8 +37,11 @@ std::vector<ReferredFile> filesReferredBy(const std::filesystem::path& gltf) {
             if (!source.is_object()) gltf::refuse(subject, place + ": is not an object");
             const std::string uri = gltf::stringMember(source, "uri");
             if (uri.empty() || gltf::isData(uri)) continue;
-            ReferredFile file{gltf::percentDecoded(uri), folder.find(uri, place, subject)};
-            file.name = file.name.lexically_normal();
+            const std::filesystem::path at = folder.place(uri, place, subject);
+            // A picture may be missing; what lies in its place, and data, have to be files.
+            std::error_code failed;
+            const bool missing = list == std::string_view("images") && !std::filesystem::exists(at, failed);
+            ReferredFile file{nameBeside(uri, at), missing ? at : folder.find(uri, place, subject), missing};
             if (names.insert(file.name).second) files.push_back(std::move(file));
         }
     }

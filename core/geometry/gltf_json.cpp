@@ -1,4 +1,4 @@
-#include "core/geometry/gltf_source.h"
+#include "core/geometry/gltf_parts.h"
 
 #include <algorithm>
 #include <array>
@@ -103,6 +103,15 @@ constexpr std::array<Kind, 9> kStructure = {{{"accessors", "accessor"},
                                              {"animations", "animation"},
                                              {"skins", "skin"}}};
 
+/// Channels that point at nodes become channels that name them.
+void aimAtNodes(const json& animation, json& copy) {
+    const auto channels = animation.find("channels");
+    if (channels == animation.end() || !channels->is_array()) return;
+    for (std::size_t k = 0; k < channels->size(); ++k)
+        if (const auto pointed = pointedNode((*channels)[k]))
+            copy["channels"][k]["target"] = {{"node", pointed->node}, {"path", pointed->path}};
+}
+
 json structureJson(const json& document, const std::string& file) {
     json structure = {{"asset", {{"version", "2.0"}}}};
     for (const Kind& kind : kStructure) {
@@ -117,6 +126,7 @@ json structureJson(const json& document, const std::string& file) {
             const std::string place = std::string(kind.element) + " " + std::to_string(i);
             if (!(*list)[i].is_object()) refuse(file, place + ": is not an object");
             copy.push_back(stripped((*list)[i], place, file));
+            if (kind.list == std::string_view("animations")) aimAtNodes((*list)[i], copy.back());
         }
     }
     if (const auto scene = document.find("scene"); scene != document.end()) {
@@ -135,11 +145,35 @@ void checkVersion(const json& document, const std::string& file) {
         refuse(file, "is of glTF version " + version.get<std::string>(), "export it as glTF 2.0");
 }
 
-// Extensions of these kinds change how a surface looks or where its texture lies, or are met by reading any component
-// type; none changes the shape that is read.
+// Extensions that are read, or met by reading any component type, and such that change how a surface looks, where its
+// texture lies, or say something about it; without these the shape is the same.
+constexpr std::array<std::string_view, 20> kReadWithout = {"KHR_mesh_quantization",
+                                                           "EXT_mesh_gpu_instancing",
+                                                           "KHR_node_visibility",
+                                                           "KHR_animation_pointer",
+                                                           "FB_ngon_encoding",
+                                                           "CESIUM_primitive_outline",
+                                                           "EXT_mesh_features",
+                                                           "EXT_instance_features",
+                                                           "EXT_feature_metadata",
+                                                           "EXT_structural_metadata",
+                                                           "EXT_mesh_manifold",
+                                                           "KHR_xmp",
+                                                           "KHR_xmp_json_ld",
+                                                           "KHR_node_hoverability",
+                                                           "KHR_node_selectability",
+                                                           "KHR_interactivity",
+                                                           "MSFT_lod",
+                                                           "VRM",
+                                                           "VRMC_vrm",
+                                                           "VRMC_springBone"};
+constexpr std::array<std::string_view, 8> kLooks = {"KHR_materials_",   "KHR_texture_",   "EXT_texture_",
+                                                    "MSFT_texture_",    "KHR_lights_",    "EXT_lights_",
+                                                    "ADOBE_materials_", "VRMC_materials_"};
+
 bool canRead(const std::string& extension) {
-    return extension == "KHR_mesh_quantization" || extension == "KHR_texture_transform" ||
-           extension == "KHR_lights_punctual" || extension.starts_with("KHR_materials_");
+    return contains(kReadWithout, extension) ||
+           std::ranges::any_of(kLooks, [&](std::string_view looks) { return extension.starts_with(looks); });
 }
 
 void checkExtensions(const json& document, const std::string& file) {
@@ -150,7 +184,8 @@ void checkExtensions(const json& document, const std::string& file) {
         if (!extension.is_string()) refuse(file, "\"extensionsRequired\" holds something that is not a name");
         const auto name = extension.get<std::string>();
         if (!canRead(name))
-            refuse(file, "needs the extension " + name + ", which is not supported", "export it without " + name);
+            refuse(file, "needs the extension " + name.substr(0, 80) + ", which is not supported",
+                   "export it without " + name.substr(0, 80));
     }
 }
 
@@ -200,8 +235,7 @@ Container splitGlb(std::span<const std::byte> bytes, const std::string& file) {
     return container;
 }
 
-Container splitFile(std::span<const std::byte> bytes, const std::filesystem::path& file) {
-    const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+Container splitFile(std::span<const std::byte> bytes, std::string_view text, const std::filesystem::path& file) {
     const bool binary = text.starts_with("glTF") || file.extension() == ".glb" || file.extension() == ".GLB";
     return binary ? splitGlb(bytes, file.string()) : Container{text, std::nullopt};
 }

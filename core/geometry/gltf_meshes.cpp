@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <numeric>
+#include <optional>
 
 #include "core/geometry/mesh_file.h"
 
@@ -29,12 +30,18 @@ glm::uvec3 triangleOf(const std::vector<std::uint32_t>& corners, int mode, std::
 
 class PrimitiveReader {
 public:
-    PrimitiveReader(const Source& source, const tinygltf::Primitive& primitive, std::string place)
-        : source_(source), accessors_(source.accessors), primitive_(primitive), place_(std::move(place)) {}
+    /// `crowded`: its vertices stand among those of others, so that only its own are taken.
+    PrimitiveReader(const Source& source, const tinygltf::Primitive& primitive, std::string place, bool crowded)
+        : source_(source), accessors_(source.accessors), primitive_(primitive), place_(std::move(place)),
+          crowded_(crowded) {}
 
     Model::Primitive read() {
-        out_.positions = accessors_.vectors<glm::vec3>(attribute("POSITION"), place_ + " POSITION");
-        readTriangles();
+        stored_ = accessors_.count(attribute("POSITION"), place_ + " POSITION");
+        std::vector<std::uint32_t> corner = corners();
+        checkCorners(corner);
+        if (crowded_ && primitive_.indices >= 0) takeOwnVertices(corner);
+        out_.positions = accessors_.vectors<glm::vec3>(attribute("POSITION"), place_ + " POSITION", own_);
+        makeTriangles(corner);
         if (has("NORMAL")) out_.normals = perVertex<glm::vec3>("NORMAL");
         if (has("TEXCOORD_0")) out_.texcoords = perVertex<glm::vec2>("TEXCOORD_0");
         readSkinWeights();
@@ -49,33 +56,45 @@ private:
     int attribute(const std::string& name) const { return primitive_.attributes.at(name); }
     std::size_t vertices() const { return out_.positions.size(); }
 
-    void checkCount(std::size_t count, const std::string& place) const {
-        if (count != vertices())
-            source_.refuse(place + ": is for " + std::to_string(count) + " vertices, not " +
-                           std::to_string(vertices()));
+    void checkCount(int accessor, const std::string& place) const {
+        const std::size_t count = accessors_.count(accessor, place);
+        if (count != stored_)
+            source_.refuse(place + ": is for " + std::to_string(count) + " vertices, not " + std::to_string(stored_));
     }
 
     template <typename Vector> std::vector<Vector> perVertex(const std::string& name) const {
-        auto values = accessors_.vectors<Vector>(attribute(name), place_ + " " + name);
-        checkCount(values.size(), place_ + " " + name);
-        return values;
+        checkCount(attribute(name), place_ + " " + name);
+        return accessors_.vectors<Vector>(attribute(name), place_ + " " + name, own_);
     }
 
     std::vector<std::uint32_t> corners() const {
         if (primitive_.indices >= 0) return accessors_.integers(primitive_.indices, 1, place_ + " indices");
-        accessors_.budget().charge(vertices(), sizeof(std::uint32_t), place_);
-        std::vector<std::uint32_t> all(vertices());
+        accessors_.budget().charge(stored_, sizeof(std::uint32_t), place_);
+        std::vector<std::uint32_t> all(stored_);
         std::iota(all.begin(), all.end(), 0U);
         return all;
     }
 
-    void readTriangles() {
-        const std::vector<std::uint32_t> corner = corners();
-        const auto bad = std::find_if(corner.begin(), corner.end(), [&](std::uint32_t i) { return i >= vertices(); });
+    void checkCorners(const std::vector<std::uint32_t>& corner) const {
+        const auto bad = std::find_if(corner.begin(), corner.end(), [&](std::uint32_t i) { return i >= stored_; });
         if (bad != corner.end())
             source_.refuse(place_ + " indices: index " + std::to_string(*bad) + " at " +
                            std::to_string(bad - corner.begin()) + " is out of range, there are " +
-                           std::to_string(vertices()) + " vertices");
+                           std::to_string(stored_) + " vertices");
+    }
+
+    void takeOwnVertices(std::vector<std::uint32_t>& corner) {
+        accessors_.budget().charge(corner.size(), sizeof(std::uint32_t), place_);
+        own_ = corner;
+        std::ranges::sort(own_);
+        const auto repeats = std::ranges::unique(own_);
+        own_.erase(repeats.begin(), repeats.end());
+        if (own_.size() == stored_) return own_.clear();
+        for (std::uint32_t& c : corner)
+            c = static_cast<std::uint32_t>(std::ranges::lower_bound(own_, c) - own_.begin());
+    }
+
+    void makeTriangles(const std::vector<std::uint32_t>& corner) {
         const bool list = primitive_.mode == TINYGLTF_MODE_TRIANGLES;
         if (list && corner.size() % 3 != 0)
             source_.refuse(place_ + ": " + std::to_string(corner.size()) + " corners are not whole triangles");
@@ -94,8 +113,8 @@ private:
         if (!has("JOINTS_0") && !has("WEIGHTS_0")) return;
         if (!has("JOINTS_0") || !has("WEIGHTS_0")) source_.refuse(place_ + ": has joints or weights, but not both");
         out_.weights = perVertex<glm::vec4>("WEIGHTS_0");
-        const auto joints = accessors_.integers(attribute("JOINTS_0"), 4, place_ + " JOINTS_0");
-        checkCount(joints.size() / 4, place_ + " JOINTS_0");
+        checkCount(attribute("JOINTS_0"), place_ + " JOINTS_0");
+        const auto joints = accessors_.integers(attribute("JOINTS_0"), 4, place_ + " JOINTS_0", own_);
         out_.joints.resize(vertices());
         for (std::size_t i = 0; i < vertices(); ++i) {
             normalise(out_.weights[i]);
@@ -130,8 +149,8 @@ private:
             custom.components = accessors_.components(accessor, place);
             if (custom.components > 4)
                 source_.refuse(place + ": matrices are not supported as attributes", "store it as vectors");
-            custom.values = accessors_.floats(accessor, custom.components, place);
-            checkCount(custom.values.size() / static_cast<std::size_t>(custom.components), place);
+            checkCount(accessor, place);
+            custom.values = accessors_.floats(accessor, custom.components, place, own_);
             out_.custom.emplace(name, std::move(custom));
         }
     }
@@ -145,8 +164,8 @@ private:
                 out_.morphTargets.emplace_back(vertices(), glm::vec3(0.0F));
                 continue;
             }
-            out_.morphTargets.push_back(accessors_.vectors<glm::vec3>(position->second, place));
-            checkCount(out_.morphTargets.back().size(), place);
+            checkCount(position->second, place);
+            out_.morphTargets.push_back(accessors_.vectors<glm::vec3>(position->second, place, own_));
         }
     }
 
@@ -154,8 +173,76 @@ private:
     const Accessors& accessors_;
     const tinygltf::Primitive& primitive_;
     std::string place_;
+    bool crowded_;
+    std::size_t stored_ = 0;         ///< vertices that its accessor holds
+    std::vector<std::uint32_t> own_; ///< the vertices that it takes, ascending; none: all
     Model::Primitive out_;
 };
+
+bool isRead(const tinygltf::Primitive& primitive) {
+    return isTriangles(primitive.mode) && primitive.attributes.contains("POSITION");
+}
+
+/// Buffer views of which primitives ask for more positions than they hold: several meshes lie in one list of vertices.
+/// If each took the whole list, a small file would ask for the memory of many.
+class CrowdedViews {
+public:
+    explicit CrowdedViews(const tinygltf::Model& structure)
+        : structure_(structure), asked_(structure.bufferViews.size()) {
+        for (const tinygltf::Mesh& mesh : structure.meshes)
+            for (const tinygltf::Primitive& primitive : mesh.primitives)
+                if (const std::optional<std::size_t> view = viewOf(primitive)) {
+                    asked_[*view].bytes += bytesOf(primitive, *view);
+                    ++asked_[*view].primitives;
+                }
+    }
+    [[nodiscard]] bool hold(const tinygltf::Primitive& primitive) const {
+        const std::optional<std::size_t> view = viewOf(primitive);
+        return view && asked_[*view].primitives > 1 &&
+               asked_[*view].bytes > static_cast<double>(structure_.bufferViews[*view].byteLength);
+    }
+
+private:
+    struct Asked {
+        double bytes = 0.0;
+        std::size_t primitives = 0;
+    };
+    [[nodiscard]] const tinygltf::Accessor* positionsOf(const tinygltf::Primitive& primitive) const {
+        if (!isRead(primitive)) return nullptr;
+        const int accessor = primitive.attributes.at("POSITION");
+        const bool there = accessor >= 0 && static_cast<std::size_t>(accessor) < structure_.accessors.size();
+        return there ? &structure_.accessors[static_cast<std::size_t>(accessor)] : nullptr;
+    }
+    [[nodiscard]] std::optional<std::size_t> viewOf(const tinygltf::Primitive& primitive) const {
+        const tinygltf::Accessor* const positions = positionsOf(primitive);
+        if (positions == nullptr || positions->bufferView < 0) return std::nullopt;
+        const auto view = static_cast<std::size_t>(positions->bufferView);
+        return view < asked_.size() ? std::optional(view) : std::nullopt;
+    }
+    [[nodiscard]] double bytesOf(const tinygltf::Primitive& primitive, std::size_t view) const {
+        const tinygltf::Accessor& positions = *positionsOf(primitive);
+        const double each =
+            3.0 * std::max(tinygltf::GetComponentSizeInBytes(static_cast<std::uint32_t>(positions.componentType)), 1);
+        const double stride = std::max(static_cast<double>(structure_.bufferViews[view].byteStride), each);
+        return positions.count == 0 ? 0.0 : static_cast<double>(positions.count - 1) * stride + each;
+    }
+
+    const tinygltf::Model& structure_;
+    std::vector<Asked> asked_; ///< of each buffer view
+};
+
+/// A mesh that is stored compressed only would be read as if all its vertices were at the origin.
+void checkUncompressed(const Source& source, std::size_t mesh, std::size_t index, const std::string& place) {
+    const json& primitive = source.document["meshes"][mesh]["primitives"][index];
+    constexpr const char* kDraco = "KHR_draco_mesh_compression";
+    if (extensionOf(primitive, kDraco).is_null()) return;
+    const int accessor = source.structure.meshes[mesh].primitives[index].attributes.at("POSITION");
+    if (accessor < 0 || static_cast<std::size_t>(accessor) >= source.structure.accessors.size()) return;
+    const tinygltf::Accessor& positions = source.structure.accessors[static_cast<std::size_t>(accessor)];
+    if (positions.bufferView < 0 && !positions.sparse.isSparse)
+        source.refuse(place + ": is compressed (" + kDraco + ") and holds no other copy",
+                      "export the model without compression");
+}
 
 /// Takes `targetNames` out of the extras when they name every morph target, as exporters agree to write them.
 std::vector<std::string> takeTargetNames(json& extras, std::size_t targets) {
@@ -169,15 +256,17 @@ std::vector<std::string> takeTargetNames(json& extras, std::size_t targets) {
     return names;
 }
 
-Model::Mesh readMesh(const Source& source, std::size_t index) {
+Model::Mesh readMesh(const Source& source, std::size_t index, const CrowdedViews& crowded) {
     const tinygltf::Mesh& from = source.structure.meshes[index];
     const std::string place = "mesh " + std::to_string(index);
     Model::Mesh mesh;
     mesh.name = from.name;
     for (std::size_t i = 0; i < from.primitives.size(); ++i) {
         const tinygltf::Primitive& primitive = from.primitives[i];
-        if (!isTriangles(primitive.mode) || !primitive.attributes.contains("POSITION")) continue;
-        PrimitiveReader reader(source, primitive, place + " primitive " + std::to_string(i));
+        if (!isRead(primitive)) continue;
+        const std::string placed = place + " primitive " + std::to_string(i);
+        checkUncompressed(source, index, i, placed);
+        PrimitiveReader reader(source, primitive, placed, crowded.hold(primitive));
         Model::Primitive read = reader.read();
         if (!read.triangles.empty()) mesh.primitives.push_back(std::move(read));
     }
@@ -198,9 +287,10 @@ Model::Mesh readMesh(const Source& source, std::size_t index) {
 
 std::vector<Model::Mesh> readMeshes(const Source& source) {
     std::vector<Model::Mesh> meshes;
+    const CrowdedViews crowded(source.structure);
     std::size_t triangles = 0;
     for (std::size_t i = 0; i < source.structure.meshes.size(); ++i) {
-        meshes.push_back(readMesh(source, i));
+        meshes.push_back(readMesh(source, i, crowded));
         for (const Model::Primitive& primitive : meshes.back().primitives) triangles += primitive.triangles.size();
         if (triangles > kMaxTriangles)
             source.refuse("has more than " + std::to_string(kMaxTriangles) + " triangles",

@@ -1,12 +1,14 @@
+#include "core/geometry/gltf_reader.h"
+
 #include <cmath>
 #include <limits>
 
 #include <glm/gtc/type_ptr.hpp>
 
 #include "core/base/error.h"
+#include "core/base/plain_text.h"
 #include "core/geometry/gltf_parts.h"
 #include "core/geometry/mesh_file.h"
-#include "core/geometry/model.h"
 
 namespace lumorph {
 
@@ -44,8 +46,7 @@ namespace {
 /// Image of a texture, -1 for none.
 int imageOf(const Source& source, int texture, std::size_t images, const std::string& place) {
     const int index = source.checked(texture, source.structure.textures.size(), place, "texture");
-    if (index < 0) return -1;
-    return source.checked(source.structure.textures[static_cast<std::size_t>(index)].source, images, place, "image");
+    return index < 0 ? -1 : pictureOf(source, static_cast<std::size_t>(index), images, place);
 }
 
 Model::Material readMaterial(const Source& source, std::size_t index, std::size_t images) {
@@ -87,42 +88,65 @@ json documentExtras(const Source& source) {
     return scene;
 }
 
-Model readDocument(const Container& container, const Folder& folder, std::size_t sourceBytes, const std::string& file) {
+/// What it needs and is read without, where that shows.
+std::vector<std::string> extensionWarnings(const json& document) {
+    std::vector<std::string> warnings;
+    const auto required = document.find("extensionsRequired");
+    if (required == document.end()) return warnings;
+    for (const json& extension : *required) {
+        const auto name = extension.get<std::string>();
+        const bool picture = name.starts_with("EXT_texture_") || name.starts_with("MSFT_texture_") ||
+                             (name.starts_with("KHR_texture_") && name != "KHR_texture_transform");
+        if (picture)
+            warnings.push_back("It asks for " + name.substr(0, 80) +
+                               ", which only changes how it looks; its geometry is read, without such pictures.");
+    }
+    return warnings;
+}
+
+ReadModel readDocument(const Container& container, const Folder& folder, std::size_t sourceBytes,
+                       const std::string& file) {
     const json document = parseBounded(container.json, file);
     const tinygltf::Model structure = structureOf(document, file);
     const Buffers buffers = readBuffers(document, container, folder, file);
     for (const std::vector<std::byte>& owned : buffers.owned) sourceBytes += owned.size();
     MemoryBudget budget(file, sourceBytes);
     const Accessors accessors(structure, buffers, budget, file);
-    const Source source{document, structure, accessors};
+    ReadModel read{{}, extensionWarnings(document)};
+    const Source source{document, structure, accessors, read.warnings};
 
-    Model model;
-    model.images = readImages(document, structure, buffers, folder, budget, file);
+    Model& model = read.model;
+    model.images = readImages(document, structure, buffers, folder, budget, file, read.warnings);
     for (std::size_t i = 0; i < structure.materials.size(); ++i)
         model.materials.push_back(readMaterial(source, i, model.images.size()));
     model.meshes = readMeshes(source);
     readScene(source, model);
     model.extras = documentExtras(source);
-    return model;
+    return read;
 }
 
 } // namespace
 } // namespace gltf
 
-Model readModel(const std::filesystem::path& file) {
+ReadModel readModelFile(const std::filesystem::path& file) {
     const std::string name = file.string();
     const std::vector<std::byte> bytes = gltf::readFile(file, kMaxFileBytes, name);
-    const gltf::Container container = gltf::splitFile(bytes, file);
-    Model model = gltf::readDocument(container, gltf::Folder(file.parent_path()), bytes.size(), name);
-    if (model.name.empty()) model.name = file.stem().string();
-    return model;
+    const PlainText text(bytes);
+    const gltf::Container container = gltf::splitFile(bytes, text.view(), file);
+    ReadModel read = gltf::readDocument(container, gltf::Folder(file.parent_path()), bytes.size(), name);
+    if (read.model.name.empty()) read.model.name = file.stem().string();
+    return read;
 }
 
-Model readGlb(std::span<const std::byte> bytes, const std::string& name) {
+Model readModel(const std::filesystem::path& file) { return readModelFile(file).model; }
+
+ReadModel readGlbBytes(std::span<const std::byte> bytes, const std::string& name) {
     if (bytes.size() > kMaxFileBytes)
         gltf::refuse(name, "is larger than " + std::to_string(kMaxFileBytes >> 20) + " MiB",
                      "split the model into parts");
     return gltf::readDocument(gltf::splitGlb(bytes, name), gltf::Folder(), bytes.size(), name);
 }
+
+Model readGlb(std::span<const std::byte> bytes, const std::string& name) { return readGlbBytes(bytes, name).model; }
 
 } // namespace lumorph

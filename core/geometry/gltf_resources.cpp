@@ -7,6 +7,7 @@
 #include <system_error>
 
 #include "core/base/confined_path.h"
+#include "core/base/error.h"
 #include "core/base/text.h"
 #include "core/geometry/mesh_file.h"
 
@@ -92,7 +93,15 @@ std::span<const std::byte> bufferBytes(const json& buffer, std::size_t index, co
         buffers.owned.push_back(uriBytes(uri, maxBytes, folder, place, file));
         return buffers.owned.back();
     }
-    if (index > 0 || !container.binary) refuse(file, place + ": has no data");
+    if (index > 0 || !container.binary) {
+        // A buffer that is there to be unpacked into.
+        const auto extensions = buffer.find("extensions");
+        const bool packed = extensions != buffer.end() && extensions->is_object() && !extensions->empty();
+        if (packed)
+            refuse(file, place + ": is compressed (" + extensions->begin().key().substr(0, 80) + ")",
+                   "export the model without compression");
+        refuse(file, place + ": has no data");
+    }
     return *container.binary;
 }
 
@@ -144,16 +153,30 @@ std::string stringMember(const json& object, const char* key) {
     return member != object.end() && member->is_string() ? member->get<std::string>() : std::string();
 }
 
-std::filesystem::path Folder::find(const std::string& uri, const std::string& place, const std::string& file) const {
+std::filesystem::path Folder::place(const std::string& uri, const std::string& place, const std::string& file) const {
     if (!path_)
         refuse(file, place + ": refers to " + inQuotes(uri) + " outside the file",
                "export as .glb with everything inside");
     const auto target = confinedPath(*path_, percentDecoded(uri));
     if (!target) refuse(file, place + ": " + inQuotes(uri) + " leads out of the folder of the model", kKeepBeside);
     std::error_code failed;
-    if (!std::filesystem::is_regular_file(*target, failed))
-        refuse(file, place + ": " + inQuotes(uri) + " is not there", kKeepBeside);
-    return *target;
+    if (std::filesystem::exists(*target, failed)) return *target;
+    // A name with a percent sign that was not encoded.
+    const auto asWritten = confinedPath(*path_, uri);
+    return asWritten && std::filesystem::exists(*asWritten, failed) ? *asWritten : *target;
+}
+
+std::filesystem::path Folder::find(const std::string& uri, const std::string& place, const std::string& file) const {
+    std::filesystem::path target = Folder::place(uri, place, file);
+    std::error_code failed;
+    if (std::filesystem::is_regular_file(target, failed)) return target;
+    const auto near = sameNameIn(*path_, percentDecoded(uri));
+    const bool other = near && std::filesystem::is_regular_file(*path_ / *near, failed);
+    refuse(file,
+           place + ": " + inQuotes(uri) + " is not there" +
+               (other ? ", but " + inQuotes(near->string()) + " lies beside the model" : std::string()),
+           other ? "move that file to where the model looks for it, or export as .glb with everything inside"
+                 : kKeepBeside);
 }
 
 std::vector<std::byte> Folder::read(const std::string& uri, std::size_t maxBytes, const std::string& place,
@@ -193,8 +216,32 @@ std::span<const std::byte> viewBytes(const tinygltf::Model& structure, const Buf
     return buffer.subspan(range.byteOffset, range.byteLength);
 }
 
+namespace {
+
+/// The bytes that a uri of a picture leads to; none, and a warning, where there is nothing to be read.
+std::vector<std::byte> pictureBytes(const std::string& uri, const Folder& folder, const std::string& place,
+                                    const std::string& file, std::vector<std::string>& warnings) {
+    const auto passOver = [&](const std::string& why) -> std::vector<std::byte> {
+        warnings.push_back("A picture is not read, " + why + "; the model is read without it.");
+        return {};
+    };
+    if (isData(uri)) {
+        std::vector<std::byte> bytes = uriBytes(uri, kMaxImageBytes, folder, place, file);
+        return bytes.empty() ? passOver(place + ": it is empty") : bytes;
+    }
+    try {
+        std::vector<std::byte> bytes = folder.read(uri, kMaxImageBytes, place, file);
+        return bytes.empty() ? passOver(place + ": " + inQuotes(uri) + " is empty") : bytes;
+    } catch (const DataError& error) {
+        return passOver(error.why());
+    }
+}
+
+} // namespace
+
 std::vector<Model::Image> readImages(const json& document, const tinygltf::Model& structure, const Buffers& buffers,
-                                     const Folder& folder, MemoryBudget& budget, const std::string& file) {
+                                     const Folder& folder, MemoryBudget& budget, const std::string& file,
+                                     std::vector<std::string>& warnings) {
     std::vector<Model::Image> images;
     for (const json& source : listOf(document, "images", file)) {
         const std::string place = "image " + std::to_string(images.size());
@@ -203,7 +250,7 @@ std::vector<Model::Image> readImages(const json& document, const tinygltf::Model
         Model::Image image{stringMember(source, "name"), stringMember(source, "mimeType"), {}};
         if (source.contains("uri")) {
             const std::string uri = stringMember(source, "uri");
-            image.bytes = uriBytes(uri, kMaxImageBytes, folder, place, file);
+            image.bytes = pictureBytes(uri, folder, place, file, warnings);
             budget.charge(image.bytes.size(), 1, place);
             if (image.mimeType.empty() && isData(uri)) image.mimeType = splitDataUri(uri, place, file).mimeType;
         } else {
@@ -213,8 +260,8 @@ std::vector<Model::Image> readImages(const json& document, const tinygltf::Model
             if (bytes.size() > kMaxImageBytes) refuse(file, place + ": is too large", "shrink the picture");
             budget.charge(bytes.size(), 1, place);
             image.bytes.assign(bytes.begin(), bytes.end());
+            if (image.bytes.empty()) refuse(file, place + ": is empty");
         }
-        if (image.bytes.empty()) refuse(file, place + ": is empty");
         if (image.mimeType.empty()) image.mimeType = sniffedMimeType(image.bytes);
         images.push_back(std::move(image));
     }

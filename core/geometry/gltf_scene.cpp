@@ -9,6 +9,8 @@
 
 namespace lumorph::gltf {
 
+using nlohmann::json;
+
 namespace {
 
 std::string nodePlace(std::size_t node) { return "node " + std::to_string(node); }
@@ -56,9 +58,12 @@ public:
 
     void read() {
         for (std::size_t i = 0; i < structure_.skins.size(); ++i) model_.skins.push_back(skin(i));
+        findHidden();
         for (const std::size_t index : order_) model_.nodes.push_back(node(index));
         readRoots();
         for (std::size_t i = 0; i < structure_.animations.size(); ++i) model_.animations.push_back(animation(i));
+        warnOfChannels();
+        for (const std::size_t index : order_) makeCopies(index);
         checkInstances();
     }
 
@@ -85,6 +90,59 @@ private:
         return {part(3), part(0), part(1), part(2)};
     }
 
+    /// With what hangs from them.
+    void findHidden() {
+        hidden_.assign(order_.size(), false);
+        std::size_t meshes = 0;
+        for (const std::size_t index : order_) {
+            const int parent = parents_[index];
+            hidden_[index] = isHidden(source_, index) || (parent >= 0 && hidden_[static_cast<std::size_t>(parent)]);
+            if (hidden_[index] && structure_.nodes[index].mesh >= 0) ++meshes;
+        }
+        if (meshes > 0)
+            source_.warnings.push_back(meshes == 1 ? "1 mesh is hidden in the file and left out (KHR_node_visibility)."
+                                                   : std::to_string(meshes) + " meshes are hidden in the file and left "
+                                                                              "out (KHR_node_visibility).");
+    }
+
+    /// A node of its own for each copy of a mesh that is drawn many times.
+    void makeCopies(std::size_t index) {
+        std::vector<Model::Node> copies = instancesOf(source_, index);
+        const auto at = static_cast<std::size_t>(place_[index]);
+        if (copies.empty() || model_.nodes[at].mesh < 0) return;
+        if (copies.size() > kMaxElements - std::min(kMaxElements, model_.nodes.size()))
+            source_.refuse(nodePlace(index) + ": shows its mesh " + std::to_string(copies.size()) + " times",
+                           "show fewer copies");
+        if (model_.nodes[at].skin >= 0 || movesWeights(place_[index])) {
+            source_.warnings.push_back("The copies of " + nodePlace(index) +
+                                       " change their shape; only one of them is read (EXT_mesh_gpu_instancing).");
+            copies.resize(1);
+        }
+        const int first = static_cast<int>(model_.nodes.size());
+        for (Model::Node& copy : copies) {
+            copy.name = model_.nodes[at].name;
+            copy.parent = place_[index];
+            copy.mesh = model_.nodes[at].mesh;
+            copy.skin = model_.nodes[at].skin;
+            copy.weights = model_.nodes[at].weights;
+            model_.nodes[at].children.push_back(static_cast<int>(model_.nodes.size()));
+            model_.nodes.push_back(std::move(copy));
+        }
+        model_.nodes[at].mesh = model_.nodes[at].skin = -1;
+        model_.nodes[at].weights.clear();
+        for (Model::Animation& animation : model_.animations)
+            for (Model::Channel& channel : animation.channels)
+                if (channel.node == place_[index] && channel.path == Model::Path::weights) channel.node = first;
+    }
+
+    bool movesWeights(int node) const {
+        return std::ranges::any_of(model_.animations, [node](const Model::Animation& animation) {
+            return std::ranges::any_of(animation.channels, [node](const Model::Channel& channel) {
+                return channel.node == node && channel.path == Model::Path::weights;
+            });
+        });
+    }
+
     Model::Node node(std::size_t index) const {
         const tinygltf::Node& from = structure_.nodes[index];
         const std::string place = nodePlace(index);
@@ -99,6 +157,7 @@ private:
         if (!from.rotation.empty()) node.rotation = rotation(from.rotation, place);
         node.mesh = source_.checked(from.mesh, model_.meshes.size(), place, "mesh");
         node.skin = source_.checked(from.skin, model_.skins.size(), place, "skin");
+        if (hidden_[index]) node.mesh = node.skin = -1;
         if (node.mesh >= 0 && !mesh(node).primitives.empty()) {
             if (!from.weights.empty()) node.weights = numbers(from.weights, targets(node), place + " weights");
             if (node.skin >= 0) checkJoints(node, place);
@@ -166,17 +225,35 @@ private:
         return skin;
     }
 
-    Model::Animation animation(std::size_t index) const {
+    Model::Animation animation(std::size_t index) {
         const tinygltf::Animation& from = structure_.animations[index];
         Model::Animation animation;
         animation.name = from.name;
+        std::size_t aimedAtNodes = 0;
         for (std::size_t i = 0; i < from.channels.size(); ++i) {
-            // A channel without a node moves something an extension brought in.
-            if (from.channels[i].target_node < 0) continue;
             const std::string place = "animation " + std::to_string(index) + " channel " + std::to_string(i);
-            animation.channels.push_back(channel(from, from.channels[i], place));
+            const tinygltf::AnimationChannel& target = from.channels[i];
+            // A channel without a node moves something that an extension brought in.
+            if (target.target_node < 0) continue;
+            // The weights of a mesh that is hidden move nothing.
+            const int aimed = source_.checked(target.target_node, place_.size(), place, "node");
+            ++aimedAtNodes;
+            if (target.target_path == "weights" && hidden_[static_cast<std::size_t>(aimed)]) continue;
+            animation.channels.push_back(channel(from, target, place));
         }
+        // Those that could not be read at all are missing among the others.
+        const json& all = source_.document["animations"][index];
+        const auto channels = all.find("channels");
+        if (channels != all.end() && channels->size() > aimedAtNodes) passedOver_ += channels->size() - aimedAtNodes;
         return animation;
+    }
+
+    void warnOfChannels() const {
+        if (passedOver_ > 0)
+            source_.warnings.push_back(
+                std::to_string(passedOver_) +
+                (passedOver_ == 1 ? " channel of its animations moves" : " channels of its animations move") +
+                " something else than a node and " + (passedOver_ == 1 ? "is" : "are") + " passed over.");
     }
 
     Model::Channel channel(const tinygltf::Animation& animation, const tinygltf::AnimationChannel& from,
@@ -240,7 +317,9 @@ private:
     Model& model_;
     std::vector<int> parents_;
     std::vector<std::size_t> order_;
-    std::vector<int> place_; ///< where a node of the file stands in the model
+    std::vector<int> place_;     ///< where a node of the file stands in the model
+    std::vector<bool> hidden_;   ///< by the file's numbers
+    std::size_t passedOver_ = 0; ///< channels of animations
 };
 
 } // namespace

@@ -44,13 +44,15 @@ struct Container {
 [[nodiscard]] Container splitGlb(std::span<const std::byte> bytes, const std::string& file);
 
 /// The two chunks of a GLB, or the whole of a text file as JSON, told apart by how they begin and by the file's name.
-[[nodiscard]] Container splitFile(std::span<const std::byte> bytes, const std::filesystem::path& file);
+/// `text` is what the bytes are as text.
+[[nodiscard]] Container splitFile(std::span<const std::byte> bytes, std::string_view text,
+                                  const std::filesystem::path& file);
 
 /// Parses JSON after a pass without recursion has bounded its length, depth and number of values.
 [[nodiscard]] nlohmann::json parseBounded(std::string_view text, const std::string& file);
 
 /// The typed structure of `document`: everything but buffers, images, extras and extensions, which tinygltf never sees.
-/// Refuses unknown required extensions and indices that are not whole numbers.
+/// Refuses required extensions without which the geometry cannot be read, and indices that are not whole numbers.
 [[nodiscard]] tinygltf::Model structureOf(const nlohmann::json& document, const std::string& file);
 
 /// Where relative URIs lead: a folder, or nowhere for a model held in memory.
@@ -59,7 +61,11 @@ public:
     Folder() = default;
     explicit Folder(std::filesystem::path path) : path_(std::move(path)) {}
 
-    /// The file `uri` names, links followed. Refuses whatever does not lie inside the folder, and what is no file.
+    /// Where the file that `uri` names lies or would lie, links followed; its name may differ in Unicode normal form,
+    /// case and kind of slashes. Refuses whatever does not lie inside the folder.
+    [[nodiscard]] std::filesystem::path place(const std::string& uri, const std::string& place,
+                                              const std::string& file) const;
+    /// The same; refuses what is no file.
     [[nodiscard]] std::filesystem::path find(const std::string& uri, const std::string& place,
                                              const std::string& file) const;
     /// Its bytes.
@@ -98,8 +104,9 @@ struct Buffers {
 [[nodiscard]] std::span<const std::byte> viewBytes(const tinygltf::Model& structure, const Buffers& buffers, int view,
                                                    const std::string& place, const std::string& file);
 
+/// A picture that lies in a file beside the model, and is not there or not to be read, is empty and leaves a warning.
 [[nodiscard]] std::vector<Model::Image> readImages(const nlohmann::json& document, const tinygltf::Model& structure,
                                                    const Buffers& buffers, const Folder& folder, MemoryBudget& budget,
-                                                   const std::string& file);
+                                                   const std::string& file, std::vector<std::string>& warnings);
 
 } // namespace lumorph::gltf

@@ -319,8 +319,11 @@ private:
     }
 
     void writeImage(const Model::Image& from) {
-        check(!from.bytes.empty(), "images", "a picture is empty");
-        json to = {{"bufferView", addView(from.bytes.data(), from.bytes.size())}};
+        json to = json::object();
+        if (from.bytes.empty())
+            to["uri"] = "data:;base64,"; // one that could not be read stays that
+        else
+            to["bufferView"] = addView(from.bytes.data(), from.bytes.size());
         setName(to, from.name);
         if (!from.mimeType.empty()) to["mimeType"] = from.mimeType;
         document_["images"].push_back(std::move(to));

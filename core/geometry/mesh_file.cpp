@@ -22,13 +22,16 @@ std::string lowerExtension(const std::filesystem::path& file) {
     return extension;
 }
 
-using Parser = TriangleMesh (*)(std::span<const std::byte>, const std::string&);
+using Bytes = std::span<const std::byte>;
+using Parser = TriangleMesh (*)(Bytes, const std::string&, std::vector<std::string>*);
 
 Parser parserOf(const std::string& extension) {
-    if (extension == ".obj") return parseObj;
+    if (extension == ".obj")
+        return [](Bytes bytes, const std::string& name, std::vector<std::string>*) { return parseObj(bytes, name); };
+    if (extension == ".off")
+        return [](Bytes bytes, const std::string& name, std::vector<std::string>*) { return parseOff(bytes, name); };
     if (extension == ".stl") return parseStl;
     if (extension == ".ply") return parsePly;
-    if (extension == ".off") return parseOff;
     return nullptr;
 }
 
@@ -55,18 +58,18 @@ bool isMeshFile(const std::filesystem::path& file) {
     return parserOf(lowerExtension(file)) != nullptr || isGltfFile(file);
 }
 
-TriangleMesh readMesh(const std::filesystem::path& file) {
+TriangleMesh readMesh(const std::filesystem::path& file, std::vector<std::string>* warnings) {
     const std::string extension = lowerExtension(file);
     if (const Parser parse = parserOf(extension)) {
         const std::vector<std::byte> bytes = readFile(file, kMaxFileBytes);
         if (bytes.empty()) throw DataError(file.string(), "the file is empty", "export the model again");
-        return parse(bytes, file.string());
+        return parse(bytes, file.string(), warnings);
     }
     if (!isGltfFile(file))
         throw DataError(file.string(), "is of no kind known by its extension",
                         "use .gltf, .glb, .obj, .stl, .ply or .off");
-    TriangleMesh mesh = readGltfMesh(file);
-    if (mesh.empty()) throw DataError(file.string(), "holds no mesh", "export the model as a surface of polygons");
+    std::vector<std::string> unread;
+    TriangleMesh mesh = readGltfMesh(file, warnings != nullptr ? *warnings : unread);
     if (mesh.triangles.size() > kMaxTriangles)
         throw DataError(file.string(), "has more than " + std::to_string(kMaxTriangles) + " triangles, the limit",
                         "reduce its detail (decimate it) before exporting");

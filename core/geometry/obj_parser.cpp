@@ -1,3 +1,4 @@
+#include "core/base/plain_text.h"
 #include "core/base/text.h"
 #include "core/geometry/mesh_parsers.h"
 
@@ -20,8 +21,8 @@ constexpr std::array kPassedOver = std::to_array<std::string_view>(
 
 class ObjParser {
 public:
-    ObjParser(std::span<const std::byte> bytes, const std::string& name)
-        : scanner_(textOf(bytes), name, TextScanner::Continuation::backslash), builder_(name, "line") {}
+    ObjParser(std::string_view text, const std::string& name)
+        : scanner_(text, name, TextScanner::Continuation::backslash), builder_(name, "line") {}
 
     TriangleMesh parse() {
         for (std::string_view keyword = scanner_.word(); !keyword.empty(); keyword = scanner_.word()) {
@@ -84,7 +85,8 @@ private:
 } // namespace
 
 TriangleMesh parseObj(std::span<const std::byte> bytes, const std::string& name) {
-    return ObjParser(bytes, name).parse();
+    const PlainText text(bytes);
+    return ObjParser(text.view(), name).parse();
 }
 
 } // namespace lumorph

@@ -1,3 +1,4 @@
+#include "core/base/plain_text.h"
 #include "core/base/text.h"
 #include "core/geometry/mesh_parsers.h"
 
@@ -61,7 +62,8 @@ void readFaces(TextScanner& scanner, MeshBuilder& builder, std::uint64_t count) 
 } // namespace
 
 TriangleMesh parseOff(std::span<const std::byte> bytes, const std::string& name) {
-    TextScanner scanner(textOf(bytes), name);
+    const PlainText text(bytes);
+    TextScanner scanner(text.view(), name);
     if (bytes.empty()) scanner.fail("the file is empty", "export the model again");
     std::string_view first = readKeyword(scanner);
     if (first.empty()) first = scanner.word();

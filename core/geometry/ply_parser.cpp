@@ -4,8 +4,11 @@
 #include <array>
 #include <cmath>
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "core/base/error.h"
+#include "core/base/plain_text.h"
 #include "core/base/text.h"
 #include "core/geometry/binary_reader.h"
 #include "core/geometry/mesh_builder.h"
@@ -18,11 +21,38 @@ namespace {
 using Type = PlyHeader::Type;
 using Property = PlyHeader::Property;
 
+std::uint64_t linesWithWords(std::string_view text) {
+    std::uint64_t lines = 0;
+    for (TextScanner scanner(text, ""); !scanner.word().empty(); scanner.restOfLine()) ++lines;
+    return lines;
+}
+
 /// Values of a text body, word by word.
 class TextBody {
 public:
     TextBody(std::string_view text, const PlyHeader& header, const std::string& name)
-        : scanner_(text.substr(header.bodyOffset), name), headLines_(header.bodyLine - 1) {}
+        : scanner_(text.substr(header.bodyOffset), name), headLines_(header.bodyLine - 1) {
+        std::uint64_t elements = 0;
+        for (const PlyHeader::Element& element : header.elements)
+            if (!element.properties.empty()) elements += element.count;
+        const std::uint64_t lines = linesWithWords(text.substr(header.bodyOffset));
+        skipsRests_ = lines >= elements;
+        keepsToLine_ = lines == elements;
+    }
+
+    void beginElement() { first_ = true; }
+    /// Where each element has a line, what is left of it belongs to none.
+    void endElement() {
+        if (!skipsRests_ || scanner_.wordOnLine().empty()) return;
+        if (++longLines_ == 1) firstLong_ = headLines_ + scanner_.line();
+        while (!scanner_.wordOnLine().empty()) continue;
+    }
+    void addWarnings(std::vector<std::string>& warnings) const {
+        if (longLines_ == 0) return;
+        warnings.push_back((longLines_ == 1 ? "1 line holds" : std::to_string(longLines_) + " lines hold") +
+                           " more than the head of the file names, first line " + std::to_string(firstLong_) +
+                           "; the rest of " + (longLines_ == 1 ? "it" : "each") + " is passed over.");
+    }
 
     double real(Type) { return number("a value"); }
     std::int64_t integer(Type) { return whole(number("a list")); }
@@ -38,8 +68,12 @@ public:
 
 private:
     double number(const std::string& what) {
-        const std::string_view word = scanner_.word();
+        const std::string_view word = keepsToLine_ && !first_ ? scanner_.wordOnLine() : scanner_.word();
+        first_ = false;
         double value = 0.0;
+        if (word.empty() && !scanner_.atEnd() && !restIsBlank())
+            fail("", 0, "the line ends where " + what + " should follow",
+                 "correct the line, or export the model again");
         if (word.empty())
             fail("", 0, "the file ends where " + what + " should follow", "it is cut short; copy or export it again");
         if (!parseReal(word, value)) fail("", 0, inQuotes(word) + " is not a number", "export the model again");
@@ -51,8 +85,18 @@ private:
         return static_cast<std::int64_t>(value);
     }
 
+    [[nodiscard]] bool restIsBlank() const {
+        TextScanner rest = scanner_;
+        return rest.word().empty();
+    }
+
     TextScanner scanner_;
     std::size_t headLines_;
+    bool skipsRests_ = false;  ///< there are lines enough for all elements
+    bool keepsToLine_ = false; ///< there is just one for each
+    bool first_ = true;        ///< the next value begins an element
+    std::uint64_t longLines_ = 0;
+    std::size_t firstLong_ = 0;
 };
 
 /// Values of a binary body. The element under way stands in errors.
@@ -62,6 +106,9 @@ public:
         : bytes_(std::as_bytes(std::span(text)).subspan(header.bodyOffset)),
           order_(header.format == PlyHeader::Format::bigEndian ? std::endian::big : std::endian::little), name_(name) {}
 
+    void beginElement() const noexcept {}
+    void endElement() const noexcept {}
+    void addWarnings(std::vector<std::string>&) const {}
     double real(Type type) {
         const auto raw = take(sizeOf(type));
         switch (type) {
@@ -137,7 +184,7 @@ public:
     PlyBodyParser(const PlyHeader& header, Body body, const std::string& name)
         : header_(header), body_(std::move(body)), name_(name), builder_(name, "face") {}
 
-    TriangleMesh parse() {
+    TriangleMesh parse(std::vector<std::string>* warnings) {
         for (const PlyHeader::Element& element : header_.elements) {
             checkCount(element);
             if (element.name == "vertex")
@@ -150,7 +197,9 @@ public:
         if (!body_.finished())
             throw DataError(name_, "more data follows after the last element of its head",
                             "correct the counts in the file's head, or export it again");
-        return builder_.finish();
+        TriangleMesh mesh = builder_.finish();
+        if (warnings != nullptr) body_.addWarnings(*warnings);
+        return mesh;
     }
 
 private:
@@ -181,6 +230,7 @@ private:
         builder_.reserve(element.count, 0, body_.remaining());
         for (std::uint64_t v = 0; v < element.count; ++v) {
             glm::vec3 position(0.0F);
+            body_.beginElement();
             for (std::size_t i = 0; i < element.properties.size(); ++i) {
                 const auto axis = std::ranges::find(columns, std::optional(i)) - columns.begin();
                 if (axis < 3)
@@ -188,6 +238,7 @@ private:
                 else
                     body_.skip(element.properties[i]);
             }
+            body_.endElement();
             builder_.addVertex(position);
         }
     }
@@ -209,12 +260,14 @@ private:
         checkFaceCount(element.count, countOf("vertex"), name_ + ", its head");
         builder_.reserve(0, element.count, body_.remaining());
         for (std::uint64_t f = 0; f < element.count; ++f) {
+            body_.beginElement();
             for (const Property& property : element.properties) {
                 if (&property == &*indices)
                     corners(property, f + 1);
                 else
                     body_.skip(property);
             }
+            body_.endElement();
             builder_.endPolygon(f + 1);
         }
     }
@@ -229,8 +282,11 @@ private:
         if (element.name == "tristrips")
             throw DataError(name_, "it holds triangle strips", "export the model with plain faces");
         if (element.properties.empty()) return;
-        for (std::uint64_t i = 0; i < element.count; ++i)
+        for (std::uint64_t i = 0; i < element.count; ++i) {
+            body_.beginElement();
             for (const Property& property : element.properties) body_.skip(property);
+            body_.endElement();
+        }
     }
 
     const PlyHeader& header_;
@@ -241,14 +297,14 @@ private:
 
 } // namespace
 
-TriangleMesh parsePly(std::span<const std::byte> bytes, const std::string& name) {
-    // Not textOf(): a byte order mark has no place before binary data.
-    const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+TriangleMesh parsePly(std::span<const std::byte> bytes, const std::string& name, std::vector<std::string>* warnings) {
+    const PlainText plain(bytes);
+    const std::string_view text = plain.view();
     if (text.empty()) throw DataError(name, "the file is empty", "export the model again");
     const PlyHeader header = readPlyHeader(text, name);
     if (header.format == PlyHeader::Format::text)
-        return PlyBodyParser(header, TextBody(text, header, name), name).parse();
-    return PlyBodyParser(header, BinaryBody(text, header, name), name).parse();
+        return PlyBodyParser(header, TextBody(text, header, name), name).parse(warnings);
+    return PlyBodyParser(header, BinaryBody(text, header, name), name).parse(warnings);
 }
 
 } // namespace lumorph

@@ -1,9 +1,11 @@
 #include "core/geometry/mesh_parsers.h"
 
+#include <algorithm>
 #include <cctype>
 #include <cmath>
 
 #include "core/base/error.h"
+#include "core/base/plain_text.h"
 #include "core/base/text.h"
 #include "core/geometry/binary_reader.h"
 #include "core/geometry/mesh_builder.h"
@@ -24,8 +26,7 @@ bool equalsIgnoringCase(std::string_view word, std::string_view lower) noexcept 
 
 class TextStlParser {
 public:
-    TextStlParser(std::span<const std::byte> bytes, const std::string& name)
-        : scanner_(textOf(bytes), name), builder_(name, "line") {}
+    TextStlParser(std::string_view text, const std::string& name) : scanner_(text, name), builder_(name, "line") {}
 
     TriangleMesh parse() {
         for (std::string_view word = scanner_.word(); !word.empty(); word = scanner_.word()) {
@@ -115,22 +116,46 @@ TriangleMesh parseBinary(std::span<const std::byte> bytes, const std::string& na
 
 /// Some binary files begin with "solid" too, but only a text has a facet soon after.
 bool looksLikeText(std::span<const std::byte> bytes) {
-    TextScanner scanner(textOf(bytes.first(std::min<std::size_t>(bytes.size(), 4096))), "");
+    const PlainText begin(bytes.first(std::min<std::size_t>(bytes.size(), 4096)));
+    TextScanner scanner(begin.view(), "");
     if (!equalsIgnoringCase(scanner.word(), "solid")) return false;
     scanner.restOfLine();
     const std::string_view next = scanner.word();
     return next.empty() || equalsIgnoringCase(next, "facet") || equalsIgnoringCase(next, "endsolid");
 }
 
+/// What some programs write behind the last triangle: a line end, padding, a note. Whole triangles are none of these:
+/// then the head counts too few.
+bool isTail(std::span<const std::byte> tail, std::uint64_t body) {
+    constexpr std::uint64_t kLongestNote = 4096;
+    const auto isBlank = [](std::byte b) {
+        return b == std::byte{0} || b == std::byte{' '} || b == std::byte{'\n'} || b == std::byte{'\r'};
+    };
+    if (std::ranges::all_of(tail, isBlank)) return true;
+    return tail.size() % kTriangleBytes != 0 && tail.size() <= std::max(kLongestNote, body);
+}
+
 } // namespace
 
-TriangleMesh parseStl(std::span<const std::byte> bytes, const std::string& name) {
+TriangleMesh parseStl(std::span<const std::byte> bytes, const std::string& name, std::vector<std::string>* warnings) {
     if (bytes.empty()) throw DataError(name, "the file is empty", "export the model again");
     const std::uint64_t stated =
         bytes.size() >= kHeaderBytes ? readNumber<std::uint32_t>(bytes.subspan(80)) : std::uint32_t{0};
     const std::uint64_t expected = kHeaderBytes + kTriangleBytes * stated;
     if (bytes.size() >= kHeaderBytes && bytes.size() == expected) return parseBinary(bytes, name);
-    if (looksLikeText(bytes)) return TextStlParser(bytes, name).parse();
+    if (looksLikeText(bytes)) {
+        const PlainText text(bytes);
+        return TextStlParser(text.view(), name).parse();
+    }
+    if (stated > 0 && bytes.size() > expected &&
+        isTail(bytes.subspan(static_cast<std::size_t>(expected)), expected - kHeaderBytes)) {
+        const std::uint64_t more = bytes.size() - expected;
+        TriangleMesh mesh = parseBinary(bytes, name);
+        if (warnings != nullptr)
+            warnings->push_back("The file goes on behind its last triangle: " + std::to_string(more) +
+                                (more == 1 ? " byte is" : " bytes are") + " passed over.");
+        return mesh;
+    }
     if (bytes.size() < kHeaderBytes)
         throw DataError(name, "is too short for an STL file, and does not begin with 'solid'",
                         "check that it is an STL file, or export it again");

@@ -19,12 +19,6 @@ std::string_view withoutPlus(std::string_view word) noexcept {
 
 } // namespace
 
-std::string_view textOf(std::span<const std::byte> bytes) noexcept {
-    std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
-    if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
-    return text;
-}
-
 bool parseReal(std::string_view word, double& value) noexcept {
     word = withoutPlus(word);
     const char* const end = word.data() + word.size();

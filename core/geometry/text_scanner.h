@@ -2,7 +2,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <span>
 #include <string>
 #include <string_view>
 
@@ -46,9 +45,6 @@ private:
     std::size_t position_ = 0;
     std::size_t line_ = 1;
 };
-
-/// The bytes as text, without a byte order mark.
-[[nodiscard]] std::string_view textOf(std::span<const std::byte> bytes) noexcept;
 
 /// A real number that may be out of a float's range; false when the word is no number. "nan" and
 /// "inf" are numbers here.

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "core/base/error.h"
+#include "core/geometry/gltf_reader.h"
 #include "core/geometry/mesh_check.h"
 #include "core/geometry/mesh_file.h"
 
@@ -31,8 +32,11 @@ int chosenAnimation(const Model& model, std::optional<int> wish, const std::stri
     return *wish;
 }
 
-void checkTriangles(std::size_t triangles, const std::string& file) {
-    if (triangles == 0) throw DataError(file, "it holds no triangles", "export the model as a surface of polygons");
+void checkTriangles(std::size_t triangles, const std::vector<std::string>& warnings, const std::string& file) {
+    if (triangles == 0)
+        throw DataError(file,
+                        "it holds no triangles" + (warnings.empty() ? std::string() : " (" + warnings.front() + ")"),
+                        "export the model as a surface of polygons");
     if (triangles > kMaxTriangles)
         throw DataError(file,
                         "it has " + std::to_string(triangles) + " triangles; at most " + std::to_string(kMaxTriangles) +
@@ -71,13 +75,13 @@ void measureAnimation(MatchTarget& target, const Model::Animation& animation, co
                                   progress.part(0.5, 1.0));
 }
 
-MatchTarget targetOfModel(std::shared_ptr<const Model> model, const std::string& file, std::optional<int> wish,
-                          const Progress& progress) {
+MatchTarget targetOfModel(std::shared_ptr<const Model> model, const std::vector<std::string>& warnings,
+                          const std::string& file, std::optional<int> wish, const Progress& progress) {
     MatchTarget target;
     const int index = chosenAnimation(*model, wish, file);
     const Model::Animation* animation = index < 0 ? nullptr : &model->animations[static_cast<std::size_t>(index)];
     TriangleMesh mesh = animation ? flatten(*model, *animation, 0.0) : flatten(*model);
-    checkTriangles(mesh.triangles.size(), file);
+    checkTriangles(mesh.triangles.size(), warnings, file);
     progress.report(0.3, "looking the mesh over");
     target.name = model->name;
     target.model = std::move(model);
@@ -93,8 +97,9 @@ MatchTarget targetOfModel(std::shared_ptr<const Model> model, const std::string&
     return target;
 }
 
-MatchTarget targetOfMesh(TriangleMesh mesh, const std::string& file, const Progress& progress) {
-    checkTriangles(mesh.triangles.size(), file);
+MatchTarget targetOfMesh(TriangleMesh mesh, const std::vector<std::string>& warnings, const std::string& file,
+                         const Progress& progress) {
+    checkTriangles(mesh.triangles.size(), warnings, file);
     progress.report(0.3, "looking the mesh over");
     MatchTarget target;
     target.solid = makeTarget(std::move(mesh));
@@ -109,22 +114,26 @@ std::shared_ptr<const MatchTarget> readMatchTarget(const std::filesystem::path& 
     progress.report(0.0, "reading the target");
     progress.throwIfCancelled();
     MatchTarget target;
+    std::vector<std::string> warnings; // of the file
     try {
         if (isGltf(file)) {
-            auto model = std::make_shared<const Model>(readModel(file));
+            ReadModel read = readModelFile(file);
+            warnings = std::move(read.warnings);
+            auto model = std::make_shared<const Model>(std::move(read.model));
             progress.throwIfCancelled();
-            target = targetOfModel(std::move(model), file.string(), animation, progress);
+            target = targetOfModel(std::move(model), warnings, file.string(), animation, progress);
         } else {
-            TriangleMesh mesh = readMesh(file);
+            TriangleMesh mesh = readMesh(file, &warnings);
             progress.throwIfCancelled();
-            target = targetOfMesh(std::move(mesh), file.string(), progress);
+            target = targetOfMesh(std::move(mesh), warnings, file.string(), progress);
         }
     } catch (const InvalidInput& error) {
         throw DataError(file.string(), error.why(), error.remedy());
     }
     checkVolume(target, file.string());
     if (!file.stem().empty()) target.name = file.stem().string();
-    target.warnings = target.solid.warnings;
+    target.warnings = std::move(warnings);
+    target.warnings.insert(target.warnings.end(), target.solid.warnings.begin(), target.solid.warnings.end());
     progress.report(1.0, "reading the target");
     return std::make_shared<const MatchTarget>(std::move(target));
 }

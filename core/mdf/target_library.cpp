@@ -36,7 +36,10 @@ std::vector<LibraryTarget> readTargets(const std::vector<std::filesystem::path>&
         LibraryTarget target;
         const bool twin = std::ranges::count(files, files[k].stem(), [](const auto& file) { return file.stem(); }) > 1;
         target.name = (twin ? files[k].filename() : files[k].stem()).string();
-        target.target = makeTarget(readMesh(files[k]));
+        std::vector<std::string> warnings;
+        TriangleMesh mesh = readMesh(files[k], &warnings);
+        target.target = makeTarget(std::move(mesh));
+        target.target.warnings.insert(target.target.warnings.begin(), warnings.begin(), warnings.end());
         target.box = boundingBox(target.target.mesh.positions);
         const glm::vec3 size = target.box.size();
         if (target.box.empty() || !(std::min({size.x, size.y, size.z}) > 0.0F))

@@ -43,7 +43,8 @@ AssetFiles::File measured(fs::path name, const fs::path& file) {
 void addMesh(const fs::path& file, std::vector<AssetFiles::File>& files) {
     files.push_back(measured(file.filename(), file));
     if (!isGltfFile(file)) return;
-    for (const ReferredFile& referred : filesReferredBy(file)) files.push_back(measured(referred.name, referred.file));
+    for (const ReferredFile& referred : filesReferredBy(file))
+        if (!referred.missing) files.push_back(measured(referred.name, referred.file));
 }
 
 AssetFiles filesOfFolder(const fs::path& folder) {

@@ -8,6 +8,7 @@
 #include "core/base/error.h"
 #include "core/base/file.h"
 #include "core/base/json_check.h"
+#include "core/base/plain_text.h"
 #include "core/base/text.h"
 #include "core/scene/project_format.h"
 #include "core/scene/scene_assets.h"
@@ -65,7 +66,8 @@ Project readProject(const fs::path& file) {
     if (fs::exists(file, failed) && fs::is_other(file, failed))
         throw DataError(file.string(), "is not a file", "choose a .lumorph file");
     const std::vector<std::byte> bytes = readFile(file, JsonLimits{}.bytes);
-    Project project = parseProject({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, file.string());
+    const PlainText text(bytes);
+    Project project = parseProject(text.view(), file.string());
     refuseLinksOutside(project, file);
     return project;
 }

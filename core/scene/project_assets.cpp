@@ -142,9 +142,16 @@ fs::path assetPath(const fs::path& projectFile, const std::string& asset) {
                             (bundled ? "resources" : "project's folder"),
                         "put the file itself beside the project");
     std::error_code failed;
-    if (!fs::exists(*path, failed))
-        throw DataError(subject, inQuotes(asset, kLongestName) + " is not there",
-                        bundled ? "install Lumorph again" : "put it back, or choose another file");
+    if (!fs::exists(*path, failed)) {
+        const auto near = bundled ? std::nullopt : sameNameIn(folder, asset);
+        throw DataError(
+            subject,
+            inQuotes(asset, kLongestName) + " is not there" +
+                (near ? ", but " + inQuotes(near->string(), kLongestName) + " lies beside the project" : std::string()),
+            bundled ? "install Lumorph again"
+            : near  ? "move it back to where the project looks for it, or choose it again"
+                    : "put it back, or choose another file");
+    }
     return *path;
 }
 

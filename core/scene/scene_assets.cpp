@@ -73,9 +73,7 @@ private:
         const auto place = placeFor(name);
         if (place && takenOver(name, *place)) return;
         const auto loaded = attempt(name, place, [this, &name](const fs::path& file) {
-            // What a broken file refers to cannot be known; then it alone is watched.
-            std::vector<FileStamp>& stamps = assets_->stamps[name];
-            for (const ReferredFile& referred : filesReferredBy(file)) stamps.push_back(stampOf(referred.file));
+            watchReferred(file, assets_->stamps[name]);
             return std::make_shared<const LoadedModel>(loadSceneModel(file, name, budget_, progress_));
         });
         if (!loaded) {
@@ -85,6 +83,14 @@ private:
         assets_->models[name] = loaded->model;
         for (const auto& [called, image] : loaded->images) assets_->images[called] = image;
         if (!loaded->problem.empty()) assets_->problems[name] = loaded->problem;
+    }
+
+    /// What a broken file refers to cannot be known; then it alone is watched, and its reader says what is wrong.
+    static void watchReferred(const fs::path& file, std::vector<FileStamp>& stamps) {
+        try {
+            for (const ReferredFile& referred : filesReferredBy(file)) stamps.push_back(stampOf(referred.file));
+        } catch (const DataError&) { // a picture that leads out, or what the reader refuses as well
+        }
     }
 
     /// Nothing, and a problem, where a name leads nowhere.

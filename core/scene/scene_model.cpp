@@ -2,9 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "core/base/error.h"
 #include "core/base/text.h"
+#include "core/geometry/gltf_reader.h"
 
 namespace lumorph {
 namespace {
@@ -55,7 +59,9 @@ class Loader {
 public:
     Loader(const std::filesystem::path& file, const std::string& name, PictureBudget& budget, const Progress& progress)
         : name_(name), budget_(budget), progress_(progress), scene_(std::make_shared<SceneModel>()) {
-        scene_->model = readModel(file);
+        ReadModel read = readModelFile(file);
+        scene_->model = std::move(read.model);
+        warnings_ = std::move(read.warnings);
         (void)flatten(scene_->model); // throws where a transform leads beyond all numbers
     }
 
@@ -64,6 +70,8 @@ public:
             scene_->materials.push_back(converted(material));
         // Decoded, they are not needed a second time.
         for (Model::Image& image : scene_->model.images) image.bytes = {};
+        for (const std::string& warning : warnings_)
+            loaded_.problem += (loaded_.problem.empty() ? name_ + ": " : " ") + warning;
         loaded_.model = std::move(scene_);
         return std::move(loaded_);
     }
@@ -115,7 +123,8 @@ private:
             budget_.charge(decoded);
             image = std::make_shared<const Image>(std::move(decoded));
         } catch (const DataError& error) {
-            if (loaded_.problem.empty()) loaded_.problem = error.what();
+            // One that could not be read is named by the model's own warnings.
+            if (loaded_.problem.empty() && !source.bytes.empty()) loaded_.problem = error.what();
             image = std::make_shared<const Image>(placeholderImage());
         }
         return *image;
@@ -125,6 +134,7 @@ private:
     PictureBudget& budget_;
     const Progress& progress_;
     std::shared_ptr<SceneModel> scene_;
+    std::vector<std::string> warnings_; ///< of its file
     LoadedModel loaded_;
 };
 

@@ -7,6 +7,7 @@
 #include "core/base/error.h"
 #include "core/base/file.h"
 #include "core/base/json_check.h"
+#include "core/base/plain_text.h"
 #include "core/scene/json_section.h"
 
 namespace lumorph {
@@ -44,7 +45,8 @@ InputScript readInputScript(std::string_view text, const std::string& name) {
 
 InputScript readInputScriptFile(const std::filesystem::path& file) {
     const std::vector<std::byte> bytes = readFile(file, kMaxBytes);
-    return readInputScript({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, file.string());
+    const PlainText text(bytes);
+    return readInputScript(text.view(), file.string());
 }
 
 } // namespace lumorph

@@ -11,7 +11,8 @@ namespace lumorph::opentrack {
 
 inline constexpr std::size_t kPacketBytes = 48;
 
-/// What opentrack's output "UDP over network" sends: six doubles, little endian.
+/// What opentrack's output "UDP over network" sends: six doubles, little endian. Programs that stand for it send them
+/// big endian, as networks do; these are read too.
 struct Packet {
     glm::dvec3 centimetres{0.0};
     double yawDegrees = 0.0;
@@ -21,7 +22,7 @@ struct Packet {
 };
 
 /// Throws DataError for any other size, and for numbers that are not finite or as large as no head's are (100 m, ten
-/// turns).
+/// turns), whichever of their bytes comes first.
 [[nodiscard]] Packet readPacket(std::span<const std::byte> datagram);
 
 /// In a right-handed frame as seen by one who looks at the screen: +X right, +Y up, +Z out of the screen to the viewer.

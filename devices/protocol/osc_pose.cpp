@@ -13,6 +13,7 @@
 #include <lo/lo.h>
 
 #include "core/base/error.h"
+#include "core/base/text.h"
 
 namespace lumorph::osc {
 
@@ -121,23 +122,37 @@ std::size_t takeSize(Bytes& bytes) {
     return size;
 }
 
-void readElement(Bytes element, int depth, std::vector<PosePart>& parts) {
+/// The address of a message, as far as it has one.
+std::string_view addressOf(Bytes message) {
+    const std::string_view text = textOf(message);
+    return text.substr(0, std::min(text.find('\0'), text.size()));
+}
+
+void readElement(Bytes element, int depth, std::vector<PosePart>& parts, std::vector<std::string>* refused) {
     if (element.empty() || element.size() % 4 != 0) refuse("its size is no multiple of four");
-    if (!textOf(element).starts_with(kBundle)) return readMessage(element, parts);
+    if (!textOf(element).starts_with(kBundle)) {
+        if (depth == 0) return readMessage(element, parts);
+        try {
+            readMessage(element, parts);
+        } catch (const DataError& error) {
+            if (refused != nullptr) refused->push_back(inQuotes(addressOf(element)) + ": " + error.why());
+        }
+        return;
+    }
     if (depth == kDeepest) refuse("its bundles are too deep in each other");
     if (element.size() < kBundle.size() + kTimeBytes) refuse("it ends too early");
     for (Bytes rest = element.subspan(kBundle.size() + kTimeBytes); !rest.empty();) {
         const std::size_t size = takeSize(rest);
-        readElement(rest.first(size), depth + 1, parts);
+        readElement(rest.first(size), depth + 1, parts, refused);
         rest = rest.subspan(size);
     }
 }
 
 } // namespace
 
-std::vector<PosePart> readPoseParts(std::span<const std::byte> datagram) {
+std::vector<PosePart> readPoseParts(std::span<const std::byte> datagram, std::vector<std::string>* refused) {
     std::vector<PosePart> parts;
-    readElement(datagram, 0, parts);
+    readElement(datagram, 0, parts, refused);
     return parts;
 }
 

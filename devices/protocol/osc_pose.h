@@ -22,8 +22,10 @@ struct PosePart {
 
 /// All parts in a packet, which is a message or a bundle of them, in their order. Sound messages about other things are
 /// left out. Throws DataError for what is no OSC, a wrong number or kind of arguments, and numbers that are not finite
-/// or out of range (1000 m, ten turns).
-[[nodiscard]] std::vector<PosePart> readPoseParts(std::span<const std::byte> datagram);
+/// or out of range (1000 m, ten turns). A message of a bundle that is wrong in itself costs itself alone: it is left
+/// out, and `refused` gets a sentence for it.
+[[nodiscard]] std::vector<PosePart> readPoseParts(std::span<const std::byte> datagram,
+                                                  std::vector<std::string>* refused = nullptr);
 
 /// Senders follow VRChat, hence Unity: a left-handed frame, +X right, +Y up, +Z forward. Ours is right-handed with +Z
 /// backward, so that Z changes its sign.

@@ -1,7 +1,9 @@
 // Trackers that send on their own account to a port of ours: opentrack and OSC.
 #include <functional>
 #include <optional>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include "core/base/error.h"
 #include "devices/protocol/opentrack.h"
@@ -33,8 +35,10 @@ public:
     }
 
 protected:
-    /// The frame that a packet completes, or none yet. Throws DataError.
-    virtual const TrackerFrame* read(std::span<const std::byte> bytes, Microseconds now) = 0;
+    /// The frame that a packet completes, or none yet; what of it cannot be used is added to `refused`. Throws
+    /// DataError.
+    virtual const TrackerFrame* read(std::span<const std::byte> bytes, Microseconds now,
+                                     std::vector<std::string>& refused) = 0;
     [[nodiscard]] virtual std::string advice(const TrackerSituation& situation) const = 0;
     [[nodiscard]] virtual std::string protocol() const = 0;
 
@@ -50,8 +54,10 @@ private:
         const Microseconds now = options_.clock->now();
         if (!intake_.admit(sender, now)) return;
         try {
-            const TrackerFrame* frame = read(bytes, now);
-            if (frame == nullptr) return log_->noteAnswer();
+            std::vector<std::string> refused;
+            const TrackerFrame* frame = read(bytes, now, refused);
+            for (const std::string& why : refused) intake_.reject(why, sender, port, now);
+            if (frame == nullptr) return refused.empty() ? log_->noteAnswer() : void();
             if (sender != source_) {
                 source_ = sender;
                 log_->setSource(protocol() + " from " + sender.toString().toStdString(), true);
@@ -77,7 +83,7 @@ public:
     }
 
 private:
-    const TrackerFrame* read(std::span<const std::byte> bytes, Microseconds now) override {
+    const TrackerFrame* read(std::span<const std::byte> bytes, Microseconds now, std::vector<std::string>&) override {
         frame_.bodies.front().pose = opentrack::poseOf(opentrack::readPacket(bytes));
         frame_.measured = frame_.arrived = now;
         ++frame_.number;
@@ -98,8 +104,9 @@ public:
         : ListeningWork(address.local, address.port, std::move(log), std::move(options)), address_(address) {}
 
 private:
-    const TrackerFrame* read(std::span<const std::byte> bytes, Microseconds now) override {
-        return bodies_.take(osc::readPoseParts(bytes), now);
+    const TrackerFrame* read(std::span<const std::byte> bytes, Microseconds now,
+                             std::vector<std::string>& refused) override {
+        return bodies_.take(osc::readPoseParts(bytes, &refused), now);
     }
     [[nodiscard]] std::string advice(const TrackerSituation& situation) const override {
         return adviceFor(address_, situation, bodies_.onlyRotations());

@@ -152,6 +152,9 @@ std::string adviceFor(const OpenTrackAddress& address, const TrackerSituation& s
 }
 
 std::string adviceFor(const OscAddress& address, const TrackerSituation& situation, bool onlyRotations) {
+    // Positions go on where rotations are refused: then a head stands right and looks wrong.
+    if (allIsWell(situation) && isRecent(situation.sinceRejected))
+        return "Poses arrive, but some of what arrives cannot be used: " + situation.lastRejected + ".";
     if (!allIsWell(situation) && onlyRotations)
         return "Only rotations arrive. Let the sender send /tracking/trackers/head/position as well.";
     return listenerAdvice(address.port, situation,

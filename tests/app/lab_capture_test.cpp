@@ -1,3 +1,4 @@
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 
@@ -45,6 +46,37 @@ TEST(LabCapture, WritesAFolderAPoseAndItsTruth) {
     // The first board lies flat on the table: its normal is the world's y.
     EXPECT_NEAR(std::abs(double(truth["poses"][0]["worldFromBoard"][1][2])), 1.0, 1e-12);
     EXPECT_EQ(std::distance(fs::directory_iterator(folder.path()), {}), 1) << "something was left beside";
+}
+
+/// What a shell makes of the line that a capture printed last.
+Outcome pasted(const Outcome& capture) {
+    const std::size_t end = capture.out.find_last_not_of('\n') + 1;
+    const std::size_t begin = capture.out.rfind('\n', end - 1) + 1;
+    const std::string folder = fs::path(lumorphProgram()).parent_path().string();
+    return Process("/bin/sh",
+                   {"-c", "PATH='" + folder + "':$PATH\n" + capture.out.substr(begin, end - begin) + " --json"})
+        .wait();
+}
+
+TEST(LabCapture, WhatItPrintsCanBePastedIntoAShell) {
+    const TemporaryFolder folder;
+    const fs::path place = folder / "it's (1) $HOME `id` \"x\" & M\u00F6bel";
+    // A board larger than what the projector lights is printed smaller; the words say how large it is.
+    const Outcome capture = lumorph({"lab", "capture", "--board", "chess:9x7:75", "--size", "640x512", "--poses", "4",
+                                     "--seed", "3", "-o", place.string()});
+    ASSERT_EQ(capture.exitCode, 0) << capture.err;
+    EXPECT_THAT(capture.err, HasSubstr("taken as printed smaller: chess:9x7:26.363."));
+    EXPECT_THAT(capture.out, HasSubstr(" --board chess:9x7:26.363 --projector 1920x1080 --pattern graycode\n"));
+    const Outcome result = pasted(capture);
+    ASSERT_EQ(result.exitCode, 0) << result.err << result.out << capture.out;
+    // Lengths are right where the board's are: the projector stands as far from the camera as it does.
+    const nlohmann::json truth = truthIn(place), found = result.json();
+    const auto distance = [](const nlohmann::json& device) {
+        const auto t = device["T"].get<std::vector<double>>();
+        return std::hypot(t.at(0), t.at(1), t.at(2));
+    };
+    EXPECT_EQ(truth["board"]["name"], "chess:9x7:26.363");
+    EXPECT_NEAR(distance(found), distance(truth), 0.03 * distance(truth));
 }
 
 TEST(LabCapture, TheSameSeedGivesTheSameBytesAndAFaultIsTold) {

@@ -1,6 +1,8 @@
 #include "app/recording/recording.h"
 
 #include <fstream>
+#include <iterator>
+#include <map>
 #include <random>
 #include <thread>
 
@@ -133,6 +135,98 @@ TEST_F(RecordingTest, WhatACrashLeavesCanBeRead) {
         found = readRecording(folder / "copy").frames.size();
     }
     EXPECT_EQ(found, 50U);
+}
+
+/// Names, sizes and bytes of a folder's files.
+std::map<std::string, std::string> filesIn(const fs::path& folder) {
+    std::map<std::string, std::string> files;
+    for (const auto& entry : fs::directory_iterator(folder)) {
+        std::ifstream in(entry.path(), std::ios::binary);
+        files[entry.path().filename()] = {std::istreambuf_iterator<char>(in), {}};
+    }
+    return files;
+}
+
+struct UnclosedRecording : RecordingTest {
+    /// Copies a recording of 50 frames as its recorder leaves it that is killed now; with its log or without.
+    void copyUnclosed(const fs::path& to, bool withLog) {
+        std::mt19937 random(3);
+        Recorder recorder(file, {{"started", "2026-10-25T14:00:00+01:00"}});
+        for (int i = 0; i < 50; ++i) recorder.add(someFrame(random, i));
+        for (int tries = 0; tries < 100; ++tries) {
+            std::this_thread::sleep_for(std::chrono::milliseconds(20));
+            if (readRecording(file).frames.size() == 50U) break;
+        }
+        live = readRecording(file);
+        fs::create_directories(to.parent_path());
+        fs::copy_file(file, to);
+        if (withLog) fs::copy_file(file.string() + "-wal", to.string() + "-wal");
+    }
+    Recording live;
+};
+
+TEST_F(UnclosedRecording, IsReadWholeAndNothingIsWritten) {
+    const fs::path copy = folder / "moved #1? 100%" / "session.lumorphrec";
+    copyUnclosed(copy, true);
+    EXPECT_EQ(live.frames.size(), 50U);
+    EXPECT_FALSE(live.closed);
+    ASSERT_EQ(live.warnings.size(), 1U);
+    EXPECT_THAT(live.warnings.front(), HasSubstr("still being recorded"));
+    EXPECT_TRUE(readRecording(file).closed) << "the recorder has ended by now";
+    EXPECT_TRUE(readRecording(file).warnings.empty());
+
+    const auto before = filesIn(copy.parent_path());
+    ASSERT_EQ(before.size(), 2U);
+    const Recording found = readRecording(copy);
+    EXPECT_TRUE(found.frames == live.frames);
+    EXPECT_FALSE(found.closed);
+    ASSERT_EQ(found.warnings.size(), 1U);
+    EXPECT_THAT(found.warnings.front(), HasSubstr("was not closed"));
+    EXPECT_TRUE(readFiles(copy).empty());
+    EXPECT_TRUE(filesIn(copy.parent_path()) == before) << "nothing was changed, and nothing came beside it";
+
+    const test::Outcome info = test::lumorph({"recording", "info", copy});
+    EXPECT_EQ(info.exitCode, 0);
+    EXPECT_THAT(info.err, HasSubstr("was not closed"));
+    EXPECT_THAT(info.out, HasSubstr("begun 2026-10-25T14:00:00+01:00"));
+    EXPECT_EQ(test::lumorph({"recording", "info", copy, "--json"}).json()["closed"], false);
+    EXPECT_TRUE(filesIn(copy.parent_path()) == before);
+}
+
+TEST_F(UnclosedRecording, WithoutItsLogIsReadAsFarAsItGoes) {
+    const fs::path alone = folder / "alone" / "session.lumorphrec";
+    copyUnclosed(alone, false);
+    const auto before = filesIn(alone.parent_path());
+    try {
+        (void)readRecording(alone);
+        ADD_FAILURE() << "was read";
+    } catch (const DataError& error) { // not one row had left the log
+        EXPECT_THAT(error.why(), HasSubstr("its log 'session.lumorphrec-wal'"));
+        EXPECT_THAT(error.why(), HasSubstr("is not beside it"));
+    }
+    EXPECT_TRUE(filesIn(alone.parent_path()) == before);
+
+    // Another session, whose rows were taken over from the log before it was lost.
+    const fs::path some = folder / "some.lumorphrec";
+    fs::copy_file(file, some);
+    sqlite3* opened = nullptr;
+    sqlite3_open(some.c_str(), &opened);
+    sqlite3_exec(opened, "PRAGMA journal_mode = WAL", nullptr, nullptr, nullptr);
+    sqlite3_close(opened);
+    ASSERT_FALSE(fs::exists(some.string() + "-wal"));
+    const fs::path moved = folder / "moved" / "some.lumorphrec";
+    fs::create_directories(moved.parent_path());
+    fs::copy_file(some, moved);
+    for (const bool emptyLog : {false, true}) {
+        if (emptyLog) std::ofstream(moved.string() + "-wal").flush();
+        const auto there = filesIn(moved.parent_path());
+        const Recording found = readRecording(moved);
+        EXPECT_TRUE(found.frames == live.frames);
+        EXPECT_FALSE(found.closed);
+        ASSERT_EQ(found.warnings.size(), 1U);
+        EXPECT_THAT(found.warnings.front(), HasSubstr("'some.lumorphrec-wal' is not beside it"));
+        EXPECT_TRUE(filesIn(moved.parent_path()) == there);
+    }
 }
 
 TEST_F(RecordingTest, CsvHasAHeaderAndOneLineARow) {

@@ -1,5 +1,6 @@
 #include <bit>
 #include <cstring>
+#include <filesystem>
 #include <limits>
 #include <random>
 #include <string>
@@ -11,6 +12,7 @@
 #include <gtest/gtest.h>
 
 #include "core/base/error.h"
+#include "core/base/file.h"
 #include "devices/protocol/osc_pose.h"
 #include "devices/trackers/osc_bodies.h"
 
@@ -94,6 +96,49 @@ TEST(OscPose, WhatIsNoPoseIsRefused) {
     };
     int number = 0;
     for (const Bytes& bytes : wrong) EXPECT_THROW((void)readPoseParts(bytes), DataError) << number++;
+}
+
+TEST(OscPose, AWrongMessageOfABundleCostsItselfAlone) {
+    constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+    const PosePart position{"head", Kind::position, {1.5, 2.0, -3.25}};
+    const PosePart rotation{"head", Kind::rotation, {10.0, 20.0, 30.0}};
+    const std::pair<Bytes, std::string> wrong[] = {
+        {message("/tracking/trackers/1/position", ",fff", {0, kNan, 0}),
+         "'/tracking/trackers/1/position': a number in it"},
+        {message("/tracking/trackers/1/rotation", ",fff", {0, 1e6F, 0}),
+         "'/tracking/trackers/1/rotation': a number in it"},
+        {message("/tracking/trackers/1/position", ",ff", {0, 0}), "a pose in it is not three floats"},
+        {message("/tracking/trackers//position", ",fff", {0, 0, 0}), "the name of a tracker"},
+        {message("noaddress", ",fff", {0, 0, 0}), "'noaddress': a message in it has no address"},
+        {Bytes(8, std::byte('a')), "a text in it has no end"},
+    };
+    for (const auto& [bad, why] : wrong) {
+        for (const Bytes& packet : {bundle({bad, kPosition, kRotation}), bundle({kPosition, bad, kRotation}),
+                                    bundle({kPosition, bundle({kRotation, bad})})}) {
+            std::vector<std::string> refused;
+            EXPECT_EQ(readPoseParts(packet, &refused), (std::vector{position, rotation})) << why;
+            ASSERT_EQ(refused.size(), 1U) << why;
+            EXPECT_NE(refused.front().find(why), std::string::npos) << refused.front();
+            EXPECT_EQ(readPoseParts(packet).size(), 2U);
+        }
+        EXPECT_THROW((void)readPoseParts(bad), DataError) << "alone it is the packet";
+    }
+    std::vector<std::string> refused;
+    EXPECT_EQ(readPoseParts(bundle({kPosition, kRotation}), &refused).size(), 2U);
+    EXPECT_TRUE(refused.empty());
+}
+
+TEST(OscPose, TheCaseOfABundleWithOneWrongMessageGivesTheOthers) {
+    const std::filesystem::path file =
+        std::filesystem::path(LUMORPH_SHARED_DIR) / "data/cases/trackers/osc-bundle-nan.bin";
+    if (!std::filesystem::exists(file)) GTEST_SKIP() << "without ../shared/data/cases";
+    std::vector<std::string> refused;
+    const std::vector<PosePart> parts = readPoseParts(readFile(file, 1000), &refused);
+    ASSERT_EQ(parts.size(), 2U);
+    EXPECT_EQ(parts[0], (PosePart{"head", Kind::position, {0.1F, 1.6F, 0.4F}}));
+    EXPECT_EQ(parts[1], (PosePart{"head", Kind::rotation, {10.0, 20.0, 5.0}}));
+    ASSERT_EQ(refused.size(), 1U);
+    EXPECT_NE(refused.front().find("/tracking/trackers/1/position"), std::string::npos);
 }
 
 TEST(OscPose, EveryTruncationIsRefused) {

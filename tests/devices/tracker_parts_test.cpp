@@ -434,6 +434,18 @@ TEST(TrackerAdvice, NatNetComparesWhatTheServerSaysWithTheAddress) {
     EXPECT_THAT(adviceFor(remote(), s), HasSubstr("by unicast, but the address says mode=multicast"));
 }
 
+TEST(TrackerAdvice, OscTellsOfWhatItRefusesWhilePosesArrive) {
+    TrackerSituation s = quiet();
+    s.sinceFrame = timeAt(0.01);
+    s.sinceRejected = timeAt(0.2);
+    s.lastRejected = "from 127.0.0.1 port 5: '/tracking/trackers/head/rotation': a number in it is out of range";
+    const OscAddress address{"127.0.0.1", 9000};
+    EXPECT_EQ(adviceFor(address, s, false),
+              "Poses arrive, but some of what arrives cannot be used: " + s.lastRejected + ".");
+    s.sinceRejected = timeAt(60.0);
+    EXPECT_THAT(adviceFor(address, s, false), IsEmpty());
+}
+
 TEST(TrackerAdvice, ListenersNameTheirPort) {
     TrackerSituation s = quiet();
     s.openToNetwork = false;

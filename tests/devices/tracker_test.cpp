@@ -1,6 +1,8 @@
 #include "devices/trackers/tracker.h"
 
 #include <bit>
+#include <string_view>
+#include <utility>
 #include <vector>
 
 #include <gmock/gmock.h>
@@ -161,6 +163,34 @@ TEST_F(RunningTracker, OscComesUnderTheNameOfItsTracker) {
     })) << tracker->status().lastRejected;
     EXPECT_EQ(frames().front().bodies.at(0).name, "1");
     EXPECT_EQ(frames().front().bodies.at(0).pose.position, glm::dvec3(1, 2, -3));
+}
+
+TEST_F(RunningTracker, OscTellsOfRotationsThatItRefusesAndGoesOnWithPositions) {
+    const quint16 port = freePort();
+    const auto tracker = open("osc://127.0.0.1:" + std::to_string(port));
+    const auto put = [](std::vector<std::byte>& bytes, std::string_view text) {
+        for (const char c : text) bytes.push_back(std::byte(c));
+    };
+    const auto putNumber = [](std::vector<std::byte>& bytes, std::uint32_t number) {
+        for (int shift = 24; shift >= 0; shift -= 8) bytes.push_back(std::byte(number >> shift));
+    };
+    std::vector<std::byte> bundle;
+    put(bundle, std::string_view("#bundle\0\0\0\0\0\0\0\0\1", 16));
+    for (const auto& [address, value] :
+         {std::pair{std::string_view("/tracking/trackers/head/rotation\0\0\0\0,fff\0\0\0\0", 44), 1e6F},
+          std::pair{std::string_view("/tracking/trackers/head/position\0\0\0\0,fff\0\0\0\0", 44), 2.0F}}) {
+        putNumber(bundle, 56);
+        put(bundle, address);
+        for (int axis = 0; axis < 3; ++axis) putNumber(bundle, std::bit_cast<std::uint32_t>(value));
+    }
+    ASSERT_TRUE(waitFor([&] {
+        sendTo(port, bundle);
+        return tracker->status().advice.find("Poses arrive") != std::string::npos;
+    })) << tracker->status().advice;
+    EXPECT_THAT(tracker->status().lastRejected,
+                HasSubstr("'/tracking/trackers/head/rotation': a number in it is out of range"));
+    EXPECT_EQ(frames().front().bodies.at(0).name, "head");
+    EXPECT_EQ(frames().front().bodies.at(0).pose.position, glm::dvec3(2, 2, -2));
 }
 
 TEST_F(RunningTracker, ASimulatedHeadMoves) {

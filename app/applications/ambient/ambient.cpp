@@ -71,6 +71,7 @@ AmbientProgram::AmbientProgram(std::uint64_t seed, AmbientSettings settings)
         settings_.now
             ? settings_.now()
             : settings_.begin.value_or(std::max(settings_.weather->begin(), days.front() + 3600.0 * kFirstHour));
+    agedUntil_ = settings_.now ? begin : 0.0;
     clock_.emplace(settings_.place, days, begin, settings_.daySeconds, settings_.now);
     view_.place = settings_.place;
     view_.sea = {settings_.weather->at(begin).windSpeed, {1.0, 0.0}};
@@ -111,7 +112,9 @@ ShowContent AmbientProgram::frame(const ShowMoment& moment) {
 /// A later forecast is read beside the show; one that cannot be read leaves the last.
 void AmbientProgram::takeNews(double step) {
     if (!settings_.feed) return;
-    newsAge_ += step;
+    // By the clock where there is one: the show rests while nobody looks.
+    const double now = settings_.now ? settings_.now() : 0.0;
+    newsAge_ += settings_.now ? std::max(0.0, now - std::exchange(agedUntil_, now)) : step;
     if (reading_.valid()) {
         if (reading_.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return;
         std::shared_ptr<const Weather> weather = reading_.get();
@@ -159,8 +162,9 @@ void AmbientProgram::lookUp() {
     const double midnight = localMidnight(settings_.place, view_.utc);
     if (midnight == day_) return;
     day_ = midnight;
+    const double local = midnight + offsetAt(settings_.place, midnight); // of the clock, whose day has 24 hours
     for (std::size_t k = 0; k < view_.dayHours.size(); ++k) {
-        const double then = midnight + 3600.0 * static_cast<double>(k);
+        const double then = utcOf(settings_.place, local + 3600.0 * static_cast<double>(k));
         view_.dayHours[k] = sunAt(settings_.place, then);
         view_.dayTemperatures[k] = settings_.weather->at(then).temperature;
     }
@@ -184,15 +188,15 @@ void AmbientProgram::lookAhead() {
 /// Every third hour of the place's clock, which need not be a whole one elsewhere.
 void AmbientProgram::lookAtCards(bool otherWeather) {
     constexpr double kApart = 3600.0 * kCardHours;
-    const double offset = settings_.place.utcOffset;
-    const auto number = static_cast<long long>(std::floor((view_.utc + offset) / kApart)) + 1;
+    const Place& place = settings_.place;
+    const auto number = static_cast<long long>(std::floor((view_.utc + offsetAt(place, view_.utc)) / kApart)) + 1;
     for (int k = 0; k < kCards; ++k) {
         View::Card& card = view_.cards[static_cast<std::size_t>(k)];
-        const double then = kApart * static_cast<double>(number + k) - offset;
+        const double then = utcOf(place, kApart * static_cast<double>(number + k));
         card.ahead = (then - view_.utc) / 3600.0;
         if (!otherWeather && number == cardNumber_) continue;
         card.slot = static_cast<int>((((number + k) % kCards) + kCards) % kCards);
-        card.day = sunAt(settings_.place, then).elevation > kHorizon;
+        card.day = sunAt(place, then).elevation > kHorizon;
         card.weather = settings_.weather->at(then);
         for (const double beside : {-3600.0, 3600.0}) {
             const WeatherHour hour = settings_.weather->at(then + beside);
@@ -293,6 +297,10 @@ Demo ambientDemo() {
         .program = [](const ProgramStart& start, const Progress&) -> std::unique_ptr<ShowProgram> {
             AmbientSettings settings = settingsFrom(start.told);
             settings.feed = start.feed;
+            // A forecast that is fetched again and again is that of the room: its clock is the room's own.
+            if (settings.feed && !settings.now && !start.told.contains("clock") && !start.told.contains("begin") &&
+                !start.told.contains("day"))
+                takeRealClock(settings);
             return std::make_unique<AmbientProgram>(start.seed, std::move(settings));
         },
         .options = settingOptions()};

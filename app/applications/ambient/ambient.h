@@ -31,9 +31,11 @@ struct AmbientSettings {
 
 /// Settings by name, as they come from outside: `weather` a file in Open-Meteo's JSON, whose place counts where none is
 /// given, `place` as `placeFrom` reads it, `begin` a local time (2026-05-17T14:00), `day` and `anticipation` seconds,
-/// `clock` real or quick. Without `begin` a forecast begins with its first hour. Throws InvalidInput and DataError
-/// naming the setting.
+/// `clock` real or quick. Without `begin` a forecast begins with its first hour, unless it comes again and again: then
+/// the clock is the real one. Throws InvalidInput and DataError naming the setting.
 [[nodiscard]] AmbientSettings settingsFrom(const DemoTold& settings);
+/// Shows the room's own time, at its own pace.
+void takeRealClock(AmbientSettings& settings);
 /// What it knows.
 [[nodiscard]] std::vector<DemoOption> settingOptions();
 
@@ -76,6 +78,7 @@ private:
     AmbientSettings settings_;
     std::future<std::shared_ptr<const Weather>> reading_; ///< a later forecast
     double newsAge_ = 0.0;                                ///< seconds since the forecast came
+    double agedUntil_ = 0.0;                              ///< UTC until which that counts, where there is a clock
     Sea sea_;
     Anticipation anticipation_;
     Scenery scenery_;

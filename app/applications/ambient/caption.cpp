@@ -78,14 +78,15 @@ Words windFrom(double bearing) {
 }
 
 /// The first hour to come in which something else falls than now.
-Words comingOf(const View& view, double local) {
+Words comingOf(const View& view) {
     const Falls now = fallsIn(view.weather);
     const auto change =
         std::ranges::find_if(view.coming, [&](const View::Coming& hour) { return fallsIn(hour.weather) != now; });
     if (change == view.coming.end())
         return now == Falls::nothing ? Words{"It stays dry.", "Es bleibt trocken."}
                                      : Words{"It goes on like that.", "So bleibt es."};
-    const std::string at = clockText(local + 3600.0 * change->ahead + 1.0); // whole hours, give or take the last bit
+    const double then = view.utc + 3600.0 * change->ahead;
+    const std::string at = clockText(then + offsetAt(view.place, then) + 1.0); // whole hours, give or take the last bit
     if (fallsIn(change->weather) == Falls::nothing) return {"Dry from " + at + ".", "Trocken ab " + at + "."};
     Words what = skyOf(change->weather);
     what.english.front() = static_cast<char>(what.english.front() - 'a' + 'A');
@@ -101,11 +102,11 @@ Words ageOf(double seconds) {
 } // namespace
 
 ShowCaption captionOf(const View& view, double quantum, double forecastAge) {
-    const double local = view.utc + view.place.utcOffset;
+    const double local = view.utc + offsetAt(view.place, view.utc);
     const double told = quantum * std::floor(local / quantum);
     const WeatherHour& now = view.weather;
     const std::string degrees = std::to_string(std::lround(now.temperature)) + " \u00B0C, ";
-    const Words coming = comingOf(view, local), sky = skyOf(now), from = windFrom(now.windFrom);
+    const Words coming = comingOf(view), sky = skyOf(now), from = windFrom(now.windFrom);
     const std::string speed = std::to_string(std::lround(now.windSpeed)) + " m/s";
     const Words wind = now.windSpeed < 0.5 ? Words{"no wind", "windstill"}
                                            : Words{"wind " + speed + " from the " + from.english,

@@ -46,7 +46,8 @@ glm::quat facing(const glm::dvec3& from, const glm::dvec3& eye) {
 } // namespace
 
 ForecastCard cardOf(const View& view, const View::Card& card) noexcept {
-    const double local = view.utc + 3600.0 * card.ahead + view.place.utcOffset;
+    const double utc = view.utc + 3600.0 * card.ahead;
+    const double local = utc + offsetAt(view.place, utc);
     const auto hours = static_cast<long long>(std::lround(local / 3600.0));
     return {signOf(card.weather, card.day), static_cast<int>(((hours % 24) + 24) % 24),
             static_cast<int>(std::lround(card.weather.temperature))};

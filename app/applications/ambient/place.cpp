@@ -68,11 +68,26 @@ std::optional<double> timeFrom(const std::string& text, double utcOffset) {
     return kDay * days + kHour * hour + 60.0 * minute - utcOffset;
 }
 
-double localMidnight(const Place& place, double utc) noexcept {
-    return kDay * std::floor((utc + place.utcOffset) / kDay) - place.utcOffset;
+double offsetAt(const Place& place, double utc) noexcept {
+    return place.zone ? place.zone->offsetAt(utc) : place.utcOffset;
 }
 
-double localHour(const Place& place, double utc) noexcept { return (utc - localMidnight(place, utc)) / kHour; }
+double utcOf(const Place& place, double local) noexcept {
+    // No zone changes its clocks twice in two days.
+    const double before = offsetAt(place, local - kDay), after = offsetAt(place, local + kDay);
+    for (const double offset : {before, after})
+        if (offsetAt(place, local - offset) == offset) return local - offset;
+    return local - before;
+}
+
+double localMidnight(const Place& place, double utc) noexcept {
+    return utcOf(place, kDay * std::floor((utc + offsetAt(place, utc)) / kDay));
+}
+
+double localHour(const Place& place, double utc) noexcept {
+    const double local = utc + offsetAt(place, utc);
+    return (local - kDay * std::floor(local / kDay)) / kHour;
+}
 
 glm::dvec2 onDevice(const Place& place, double bearing) noexcept {
     const double side = place.latitude >= 0.0 ? 1.0 : -1.0;

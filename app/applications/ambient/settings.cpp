@@ -18,22 +18,25 @@ double secondsOf(const std::string& name, const std::string& text) {
 }
 
 double localBegin(const std::string& text, const Place& place) {
-    const std::optional<double> time = timeFrom(text, place.utcOffset);
-    if (!time) throw InvalidInput("begin", "'" + text.substr(0, 40) + "' is no time", "write it as 2026-05-17T14:00");
-    return *time;
+    const std::optional<double> local = timeFrom(text, 0.0);
+    if (!local) throw InvalidInput("begin", "'" + text.substr(0, 40) + "' is no time", "write it as 2026-05-17T14:00");
+    return utcOf(place, *local);
 }
 
 void takeClock(AmbientSettings& settings, const std::string& text) {
     if (text != "real" && text != "quick")
         throw InvalidInput("clock", "'" + text.substr(0, 40) + "' is no clock", "say real or quick");
-    if (text == "quick") return;
+    if (text == "real") takeRealClock(settings);
+}
+
+} // namespace
+
+void takeRealClock(AmbientSettings& settings) {
     settings.daySeconds = 86'400.0;
     settings.now = [] {
         return std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
     };
 }
-
-} // namespace
 
 std::vector<DemoOption> settingOptions() {
     return {

@@ -152,7 +152,10 @@ std::vector<double> notableDays(const Weather& weather, const Place& place) {
     constexpr double kADay = 24.0 * kAnHour;
     constexpr std::size_t kFew = 16;
     std::vector<double> days;
-    for (double day = localMidnight(place, weather.begin()); day < weather.end(); day += kADay) days.push_back(day);
+    // A day on which clocks change has 23 or 25 hours.
+    for (double day = localMidnight(place, weather.begin()); day < weather.end();
+         day = localMidnight(place, day + 1.5 * kADay))
+        days.push_back(day);
     if (days.empty()) days.push_back(localMidnight(place, weather.begin()));
     if (days.size() <= kFew) return days;
     constexpr std::array<double DaySums::*, 5> kinds = {&DaySums::fair, &DaySums::storm, &DaySums::fog, &DaySums::snow,

@@ -2,6 +2,9 @@
 
 #include <array>
 #include <cmath>
+#include <cstddef>
+#include <limits>
+#include <memory>
 #include <numbers>
 #include <utility>
 #include <vector>
@@ -11,6 +14,7 @@
 #include "core/base/error.h"
 #include "core/base/file.h"
 #include "core/base/json_check.h"
+#include "core/base/plain_text.h"
 
 namespace lumorph::ambient {
 namespace {
@@ -136,7 +140,9 @@ const Unit& unitOf(const Reader& reader, const Series& series) {
     reader.refuse(std::string("hourly_units.") + series.key + " is \"" + name.substr(0, 40) + "\"", "use " + known);
 }
 
-/// In our units; empty where the file has none and need not.
+constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+
+/// In our units, kUnknown for null; empty where the file has none and need not.
 std::vector<double> valuesOf(const Reader& reader, const Series& series, std::size_t count) {
     const json* list = reader.list(series.key, series.required);
     if (!list) return {};
@@ -148,8 +154,10 @@ std::vector<double> valuesOf(const Reader& reader, const Series& series, std::si
     std::vector<double> values;
     for (const json& value : *list) {
         const std::string place = placeOf(series.key, values.size());
-        if (value.is_null())
-            reader.refuse(place + " is null", series.required ? "ask for hours that are known" : "leave this list out");
+        if (value.is_null()) {
+            values.push_back(kUnknown);
+            continue;
+        }
         if (!value.is_number()) reader.refuse(place + " is not a number");
         const double number = value.get<double>() * unit.scale + unit.shift;
         if (!(number >= series.min && number <= series.max))
@@ -163,25 +171,80 @@ std::vector<double> valuesOf(const Reader& reader, const Series& series, std::si
 bool isFog(double code) { return code == 45.0 || code == 48.0; }
 bool isThunder(double code) { return code >= 95.0; }
 
-std::vector<WeatherHour> hoursOf(const Reader& reader, std::size_t count) {
-    std::array<std::vector<double>, 8> values;
-    for (std::size_t s = 0; s < values.size(); ++s) values[s] = valuesOf(reader, allSeries()[s], count);
+using AllValues = std::array<std::vector<double>, 8>;
+
+bool isKnown(const AllValues& values, std::size_t hour) {
+    for (std::size_t s = 0; s < values.size(); ++s)
+        if (allSeries()[s].required && std::isnan(values[s][hour])) return false;
+    return true;
+}
+
+/// From one known hour to the next each value changes evenly, the wind by the shorter way; both ends are known.
+void fillGaps(std::vector<double>& values, bool turns) {
+    for (std::size_t k = 1; k < values.size(); ++k) {
+        if (!std::isnan(values[k])) continue;
+        std::size_t next = k;
+        while (std::isnan(values[next])) ++next;
+        const double from = values[k - 1];
+        const double way = turns ? std::remainder(values[next] - from, 2.0 * std::numbers::pi) : values[next] - from;
+        for (std::size_t i = k; i < next; ++i)
+            values[i] = from + way * static_cast<double>(i - k + 1) / static_cast<double>(next - k + 1);
+    }
+}
+
+/// The hours of which all is known that has to be, and those between them; `begin` becomes that of the first. The end
+/// of a forecast reaches beyond what some of its models know.
+std::size_t cutToKnown(const Reader& reader, AllValues& values, double& begin) {
+    const std::size_t count = values[kTemperature].size();
+    std::size_t first = 0, end = count;
+    while (first < count && !isKnown(values, first)) ++first;
+    if (first == count)
+        reader.refuse("has no hour of which temperature, precipitation, clouds and wind are all known",
+                      "ask for hours that are known");
+    while (!isKnown(values, end - 1)) --end;
+    begin += kSecondsOfHour * static_cast<double>(first);
+    for (std::size_t s = 0; s < values.size(); ++s) {
+        if (values[s].empty()) continue;
+        values[s] = {values[s].begin() + static_cast<std::ptrdiff_t>(first),
+                     values[s].begin() + static_cast<std::ptrdiff_t>(end)};
+        if (allSeries()[s].required) fillGaps(values[s], s == kWindFrom);
+    }
+    return end - first;
+}
+
+/// `otherwise` where the file has none, or none for this hour.
+double valueOr(const std::vector<double>& values, std::size_t hour, double otherwise) {
+    return values.empty() || std::isnan(values[hour]) ? otherwise : values[hour];
+}
+
+/// `begin` becomes the time of the first that is known.
+std::vector<WeatherHour> hoursOf(const Reader& reader, std::size_t all, double& begin) {
+    AllValues values;
+    for (std::size_t s = 0; s < values.size(); ++s) values[s] = valuesOf(reader, allSeries()[s], all);
+    const std::size_t count = cutToKnown(reader, values, begin);
     std::vector<WeatherHour> hours(count);
     for (std::size_t k = 0; k < count; ++k) {
-        const double code = values[kCode].empty() ? 0.0 : values[kCode][k];
+        const double code = valueOr(values[kCode], k, 0.0);
         WeatherHour& hour = hours[k];
         hour.temperature = values[kTemperature][k];
         hour.cloudCover = values[kClouds][k];
         hour.windSpeed = values[kWind][k];
         hour.windFrom = values[kWindFrom][k];
-        hour.snow = values[kSnow].empty() ? 0.0 : values[kSnow][k];
+        hour.snow = valueOr(values[kSnow], k, 0.0);
         // Precipitation holds melted snow: 7 cm of snow are 10 mm of water, says the service.
         hour.rain = std::max(0.0, values[kPrecipitation][k] - hour.snow / 0.7);
         if (hour.rain < 0.1 && hour.snow > 0.0) hour.rain = 0.0;
-        hour.visibility = !values[kVisibility].empty() ? values[kVisibility][k] : isFog(code) ? 300.0 : 24e3;
+        hour.visibility = valueOr(values[kVisibility], k, isFog(code) ? 300.0 : 24e3);
         hour.thunder = isThunder(code) ? 1.0 : 0.0;
     }
     return hours;
+}
+
+/// Times are written with the offset of the day on which the forecast was asked for, also where clocks change in it;
+/// the zone says what they show.
+std::shared_ptr<const TimeZone> zoneOf(const json& root) {
+    const bool named = root.contains("timezone") && root.at("timezone").is_string();
+    return named ? zoneNamed(root.at("timezone").get<std::string>()) : nullptr;
 }
 
 } // namespace
@@ -199,16 +262,19 @@ Forecast readForecast(std::string_view text, const std::string& name) {
     }
     const double offset = reader.number("utc_offset_seconds", 0.0, 14.0 * kSecondsOfHour);
     const json& times = *reader.list("time", true);
-    const double begin = beginOf(reader, times, offset);
-    Forecast forecast{Weather(begin, hoursOf(reader, times.size())), {}};
+    double begin = beginOf(reader, times, offset);
+    std::vector<WeatherHour> hours = hoursOf(reader, times.size(), begin);
+    Forecast forecast{Weather(begin, std::move(hours)), {}};
     if (root.contains("latitude") && root.contains("longitude"))
-        forecast.place = Place{reader.number("latitude", 0.0, 90.0), reader.number("longitude", 0.0, 180.0), offset};
+        forecast.place =
+            Place{reader.number("latitude", 0.0, 90.0), reader.number("longitude", 0.0, 180.0), offset, zoneOf(root)};
     return forecast;
 }
 
 Forecast readForecastFile(const std::filesystem::path& file) {
     const std::vector<std::byte> bytes = readFile(file, kMostBytes);
-    return readForecast({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, file.string());
+    const PlainText text(bytes);
+    return readForecast(text.view(), file.string());
 }
 
 } // namespace lumorph::ambient

@@ -7,6 +7,7 @@
 #include "app/applications/labyrinth/level.h"
 #include "core/base/error.h"
 #include "core/base/file.h"
+#include "core/base/plain_text.h"
 #include "core/base/resources.h"
 #include "core/base/text.h"
 
@@ -263,13 +264,17 @@ std::string textOf(const std::filesystem::path& file) {
 
 } // namespace
 
-Level readLevel(std::string_view text, const std::string& name) { return Reader(text, name, true).read(); }
+Level readLevel(std::string_view text, const std::string& name) {
+    const PlainText plain(text);
+    return Reader(plain.view(), name, true).read();
+}
 
 Level readLevelFile(const std::filesystem::path& file) { return readLevel(textOf(file), file.string()); }
 
 Level readUnfinishedLevel(const std::filesystem::path& file) {
     const std::string text = textOf(file), name = file.string();
-    return Reader(text, name, false).read();
+    const PlainText plain(text);
+    return Reader(plain.view(), name, false).read();
 }
 
 std::string levelText(const Level& level) {

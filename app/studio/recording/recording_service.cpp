@@ -123,6 +123,9 @@ void addPoses(Gate& gate, const std::string& source, const TrackerFrame& frame) 
         });
 }
 
+/// The same moment, written with its distance from UTC.
+QDateTime withZone(const QDateTime& local) { return local.toOffsetFromUtc(local.offsetFromUtc()); }
+
 /// A file that is begun, before anything is handed to it.
 std::shared_ptr<Recorder> begun(const fs::path& file, std::map<std::string, std::string> facts,
                                 const ProjectSource& source, const DeviceProfile& profile, const Progress& progress) {
@@ -334,7 +337,7 @@ void RecordingService::start(const fs::path& file) {
     data_->phase = Phase::starting;
     const std::map<std::string, std::string> facts{
         {"program", "Lumorph " LUMORPH_VERSION},
-        {"started", QDateTime::currentDateTime().toString(Qt::ISODate).toStdString()},
+        {"started", withZone(QDateTime::currentDateTime()).toString(Qt::ISODate).toStdString()},
         {"project_name", data_->document.name().toStdString()}};
     data_->starting = data_->jobs.run<std::shared_ptr<Recorder>>(
         kRecordPlace, tr("Starting the recording"),

@@ -122,6 +122,10 @@ void ReplayService::Data::take(const fs::path& from, ReadSession read) {
     file = from;
     session = std::move(read);
     notices.dismissAll(kReplayPlace);
+    for (const std::string& warning : session.recording->warnings)
+        notices.post(
+            kReplayPlace,
+            {Notice::Level::warning, tr("Recording %1").arg(nameOf(file)), QString::fromStdString(warning), {}, {}});
     if (session.recording->frames.empty()) {
         notices.post(kReplayPlace, {Notice::Level::warning,
                                     nameOf(file),

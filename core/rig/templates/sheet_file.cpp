@@ -10,6 +10,7 @@
 #include "core/base/error.h"
 #include "core/base/file.h"
 #include "core/base/json_check.h"
+#include "core/base/plain_text.h"
 #include "core/base/text.h"
 #include "core/rig/templates/sheet_outline.h"
 
@@ -28,7 +29,7 @@ constexpr std::array<std::string_view, 3> kSides{"smaller", "left", "right"};
 
 std::string contentOf(const std::filesystem::path& file) {
     const std::vector<std::byte> bytes = readFile(file, kMostBytes);
-    return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+    return std::string(PlainText(bytes).view());
 }
 
 /// An object of the bends file; says where it stands.

@@ -10,6 +10,7 @@
 #include <glm/mat3x3.hpp>
 
 #include "core/base/error.h"
+#include "core/base/plain_text.h"
 #include "core/base/text.h"
 #include "core/rig/templates/sheet_outline.h"
 
@@ -566,7 +567,8 @@ private:
 } // namespace
 
 std::vector<glm::dvec2> svgOutline(std::string_view svg, const std::string& name) {
-    return SvgReader(svg, name).outline();
+    const PlainText text(svg);
+    return SvgReader(text.view(), name).outline();
 }
 
 } // namespace lumorph

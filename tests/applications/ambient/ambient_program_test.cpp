@@ -355,6 +355,38 @@ TEST(AmbientProgram, ALaterForecastTakesThePlaceOfTheLastAndItsAgeIsSaid) {
     EXPECT_LT(std::abs(program.view().utc - 1'782'864'000.0), 100'000.0) << "its own days are shown, July 1st";
 }
 
+TEST(AmbientProgram, AForecastAgesByTheClockAlsoWhileTheShowRests) {
+    AmbientSettings settings = constant(WeatherHour{});
+    double now = 1'780'050'000.0;
+    settings.now = [&now] { return now; };
+    settings.feed = [](const std::string&) { return std::nullopt; };
+    AmbientProgram program(1, settings);
+    Visit visit(program);
+    visit.frame();
+    EXPECT_EQ(program.forecastAge(), 0.0);
+    now += 3600.0 * 7.0; // the machine has slept
+    visit.frame();
+    EXPECT_DOUBLE_EQ(program.forecastAge(), 3600.0 * 7.0);
+    now -= 3600.0; // somebody has set its clock
+    visit.frame();
+    EXPECT_DOUBLE_EQ(program.forecastAge(), 3600.0 * 7.0);
+}
+
+TEST(AmbientProgram, AForecastThatComesAgainAndAgainIsShownByTheRealClock) {
+    const DemoFeed feed = [](const std::string&) { return std::nullopt; };
+    const auto begunAt = [](DemoTold told, DemoFeed fed) {
+        const auto program =
+            ambientDemo().program(ProgramStart{.seed = 1, .told = std::move(told), .feed = std::move(fed)}, {});
+        Visit(*program).frame();
+        return dynamic_cast<const AmbientProgram&>(*program).view().utc;
+    };
+    const double now = std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
+    EXPECT_NEAR(begunAt({}, feed), now, 60.0);
+    EXPECT_GT(std::abs(begunAt({}, {}) - now), 0.0) << "a simulated year has no now";
+    EXPECT_NEAR(begunAt({{"begin", "2026-05-17T14:00"}}, feed), *timeFrom("2026-05-17T13:00", 0.0), 600.0);
+    EXPECT_GT(std::abs(begunAt({{"clock", "quick"}, {"begin", "2026-05-17T14:00"}}, feed) - now), 0.0);
+}
+
 TEST(AmbientProgram, WhatNobodyFetchesGetsNoOlder) {
     AmbientProgram program(1, constant(WeatherHour{}));
     Visit(program).frames(5.0);

@@ -1,15 +1,20 @@
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <filesystem>
 #include <fstream>
 #include <limits>
 #include <numbers>
+#include <span>
 #include <string>
+#include <vector>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
 #include "app/applications/ambient/simulated_year.h"
+#include "app/applications/ambient/time_zone.h"
 #include "app/applications/ambient/weather.h"
 #include "app/applications/ambient/weather_file.h"
 #include "core/base/error.h"
@@ -221,6 +226,147 @@ TEST(AmbientForecast, DoesWithoutWhatNeedNotBeThere) {
     EXPECT_LT(readForecast(foggy.dump(), "foggy").weather.hours()[0].visibility, 1000.0);
 }
 
+TEST(AmbientForecast, ShowsTheHoursThatAreKnown) {
+    json gaps = answer();
+    json& hourly = gaps["hourly"];
+    hourly["time"] = json::array();
+    for (int k = 0; k < 8; ++k) hourly["time"].push_back("2026-07-01T0" + std::to_string(k) + ":00");
+    const json null;
+    //                          0     1     2     3     4     5     6     7
+    hourly["temperature_2m"] = {null, 10.0, 12.0, null, null, 18.0, 20.0, 22.0};
+    hourly["precipitation"] = {0.0, 0.0, 1.0, 1.0, null, 4.0, 0.0, null};
+    hourly["snowfall"] = {0.0, null, 0.0, 0.0, 0.0, 0.0, null, 0.0};
+    hourly["cloud_cover"] = {0, 10, 20, 30, 40, 50, 60, 70};
+    hourly["visibility"] = {1000, 2000, null, 4000, 5000, 6000, 7000, 8000};
+    hourly["wind_speed_10m"] = {3.6, 3.6, 3.6, 3.6, 3.6, 3.6, 3.6, 3.6};
+    hourly["wind_direction_10m"] = {0, 0, 350, null, null, 20, 0, 0};
+    hourly["weather_code"] = {0, 0, 45, 0, 0, null, 95, 0};
+    const Weather read = readForecast(gaps.dump(), "gaps").weather;
+    EXPECT_EQ(read.begin(), 1'782'864'000.0 - 7200.0 + 3600.0) << "the first hour has no temperature";
+    ASSERT_EQ(read.hours().size(), 6U) << "the last has no precipitation";
+    const double temperatures[] = {10.0, 12.0, 14.0, 16.0, 18.0, 20.0};
+    const double rains[] = {0.0, 1.0, 1.0, 2.5, 4.0, 0.0};
+    const double winds[] = {0.0, 350.0, 0.0, 10.0, 20.0, 0.0};
+    const double visibilities[] = {2000.0, 300.0, 4000.0, 5000.0, 6000.0, 7000.0};
+    for (std::size_t k = 0; k < 6; ++k) {
+        const WeatherHour& hour = read.hours()[k];
+        EXPECT_NEAR(hour.temperature, temperatures[k], 1e-12) << k;
+        EXPECT_NEAR(hour.rain, rains[k], 1e-12) << k;
+        EXPECT_NEAR(std::remainder(hour.windFrom - winds[k] * std::numbers::pi / 180.0, 2.0 * std::numbers::pi), 0.0,
+                    1e-12)
+            << k;
+        EXPECT_NEAR(hour.visibility, visibilities[k], 1e-9) << k << ": where it is null the code says fog, or nothing";
+        EXPECT_EQ(hour.snow, 0.0);
+        EXPECT_EQ(hour.thunder, k == 5 ? 1.0 : 0.0);
+    }
+}
+
+/// Clocks of the European Union: forward on the last Sunday of March, back on that of October, both at 1:00 UTC.
+std::vector<std::byte> zoneFileOf(const std::string& footer) {
+    std::string file;
+    for (int block = 0; block < 2; ++block) {
+        file += "TZif2" + std::string(15, '\0');
+        for (const char count : {0, 0, 0, 0, 1, 4}) file += std::string(3, '\0') + count;
+        file += std::string("\0\0\x0E\x10\0\0", 6) + std::string("CET\0", 4); // 3600 s
+    }
+    file += "\n" + footer + "\n";
+    const auto bytes = std::as_bytes(std::span(file));
+    return {bytes.begin(), bytes.end()};
+}
+
+Place berlinByRule() {
+    const auto zone = std::make_shared<const TimeZone>(zoneFileOf("CET-1CEST,M3.5.0,M10.5.0/3"), "Berlin");
+    return {52.52, 13.41, 7200.0, zone};
+}
+
+double utcAt(const char* time) { return *timeFrom(time, 0.0); }
+
+TEST(AmbientClocks, FollowTheZoneAcrossAChange) {
+    const Place place = berlinByRule();
+    EXPECT_EQ(offsetAt(place, utcAt("2026-10-25T00:59")), 7200.0);
+    EXPECT_EQ(offsetAt(place, utcAt("2026-10-25T01:00")), 3600.0);
+    EXPECT_EQ(offsetAt(place, utcAt("2026-03-29T00:59")), 3600.0);
+    EXPECT_EQ(offsetAt(place, utcAt("2026-03-29T01:00")), 7200.0);
+    EXPECT_EQ(offsetAt(place, utcAt("2040-07-01T00:00")), 7200.0);
+    EXPECT_DOUBLE_EQ(localHour(place, utcAt("2026-10-25T13:00")), 14.0);
+    EXPECT_DOUBLE_EQ(localHour(place, utcAt("2026-10-24T12:00")), 14.0);
+    EXPECT_EQ(utcOf(place, utcAt("2026-10-25T14:00")), utcAt("2026-10-25T13:00"));
+    EXPECT_EQ(utcOf(place, utcAt("2026-10-25T02:30")), utcAt("2026-10-25T00:30")) << "the first of two";
+    EXPECT_EQ(utcOf(place, utcAt("2026-03-29T02:30")), utcAt("2026-03-29T01:30")) << "no clock shows that";
+    EXPECT_EQ(localMidnight(place, utcAt("2026-10-25T20:00")), utcAt("2026-10-24T22:00"));
+    EXPECT_EQ(localMidnight(place, utcAt("2026-10-25T23:00")), utcAt("2026-10-25T23:00"));
+    // Days of 24, 25 and 24 hours.
+    const std::vector<double> days =
+        notableDays(Weather(utcAt("2026-10-23T22:00"), std::vector<WeatherHour>(72)), place);
+    EXPECT_EQ(days,
+              (std::vector<double>{utcAt("2026-10-23T22:00"), utcAt("2026-10-24T22:00"), utcAt("2026-10-25T23:00")}));
+}
+
+TEST(AmbientClocks, ReadTheRulesOfOtherZones) {
+    const struct {
+        const char *footer, *time;
+        double hours;
+    } rows[] = {
+        {"<+0530>-5:30", "2026-07-01T00:00", 5.5},
+        {"EST5EDT,M3.2.0,M11.1.0", "2026-03-08T06:59", -5.0},
+        {"EST5EDT,M3.2.0,M11.1.0", "2026-03-08T07:00", -4.0},
+        {"EST5EDT,M3.2.0,M11.1.0", "2026-11-01T05:59", -4.0},
+        {"EST5EDT,M3.2.0,M11.1.0", "2026-11-01T06:00", -5.0},
+        {"AEST-10AEDT,M10.1.0,M4.1.0/3", "2026-01-01T00:00", 11.0}, // summer over the end of the year
+        {"AEST-10AEDT,M10.1.0,M4.1.0/3", "2026-07-01T00:00", 10.0},
+        {"<-02>2<-01>,M3.5.0/-1,M10.5.0/0", "2026-03-29T00:59", -2.0},
+        {"<-02>2<-01>,M3.5.0/-1,M10.5.0/0", "2026-03-29T01:00", -1.0},
+        {"AAA0BBB,J60/0,J300/0", "2028-03-01T00:00", 1.0}, // the 60th day is March 1st, in leap years too
+        {"AAA0BBB,J60/0,J300/0", "2028-02-29T23:59", 0.0},
+        {"AAA0BBB,59/0,300/0", "2028-02-29T00:00", 1.0},
+    };
+    for (const auto& row : rows)
+        EXPECT_EQ(TimeZone(zoneFileOf(row.footer), "zone").offsetAt(utcAt(row.time)), 3600.0 * row.hours)
+            << row.footer << " " << row.time;
+    for (const char* wrong :
+         {"CET-1CEST,M3.5.0", "CET", "CET-1CEST,M13.5.0,M10.5.0", "<+05-5", "CET-1CEST,M3.5.0,M10.5.0/3x"})
+        EXPECT_THROW(TimeZone(zoneFileOf(wrong), "zone"), DataError) << wrong;
+    const std::vector<std::byte> whole = zoneFileOf("CET-1");
+    for (std::size_t size = 0; size < 108; ++size)
+        EXPECT_THROW(TimeZone(std::span(whole).first(size), "zone"), DataError) << size;
+    for (const char* none : {"", "/etc/passwd", "../zoneinfo/UTC", "Nowhere/At_All", "Europe"})
+        EXPECT_EQ(zoneNamed(none), nullptr) << none;
+}
+
+/// Small inputs of ../shared/data/cases, whose right values stand in FACTS.md there.
+class WeatherCases : public ::testing::Test {
+protected:
+    static Forecast read(const char* name) {
+        return readForecastFile(std::filesystem::path(LUMORPH_SHARED_DIR) / "data/cases/weather" / name);
+    }
+    void SetUp() override {
+        if (!std::filesystem::exists(std::filesystem::path(LUMORPH_SHARED_DIR) / "data/cases"))
+            GTEST_SKIP() << "without ../shared/data/cases";
+    }
+};
+
+TEST_F(WeatherCases, NullsAtTheEndAreLeftOut) {
+    const Weather plain = read("plain.json").weather, some = read("last-three-null.json").weather;
+    ASSERT_EQ(plain.hours().size(), 72U);
+    ASSERT_EQ(some.hours().size(), 69U);
+    EXPECT_EQ(some.begin(), utcAt("2026-05-16T22:00"));
+    EXPECT_EQ(some.at(utcAt("2026-05-19T18:00")).temperature, 17.0) << "20:00 there, the last that is known";
+    for (std::size_t k = 0; k < 69; ++k) EXPECT_EQ(some.hours()[k], plain.hours()[k]);
+}
+
+TEST_F(WeatherCases, AForecastAskedInSummerTimeIsRightInWinterTime) {
+    if (!zoneNamed("Europe/Berlin")) GTEST_SKIP() << "without tzdata";
+    const Forecast forecast = read("berlin-asked-in-summer-time.json");
+    EXPECT_EQ(forecast.weather.begin(), utcAt("2026-10-23T22:00")) << "times are two hours ahead of UTC throughout";
+    EXPECT_EQ(forecast.weather.end(), utcAt("2026-10-26T21:00"));
+    ASSERT_TRUE(forecast.place);
+    EXPECT_EQ(utcOf(*forecast.place, utcAt("2026-10-25T14:00")), utcAt("2026-10-25T13:00"));
+    EXPECT_DOUBLE_EQ(localHour(*forecast.place, utcAt("2026-10-25T13:00")), 14.0);
+    // The rules that are written down here are those of the database.
+    for (double time = utcAt("2026-01-01T00:00"); time < utcAt("2028-01-01T00:00"); time += 1800.0)
+        ASSERT_EQ(offsetAt(*forecast.place, time), offsetAt(berlinByRule(), time)) << time;
+}
+
 TEST(AmbientForecast, NamesWhatIsWrong) {
     struct Row {
         std::string text, says;
@@ -256,8 +402,7 @@ TEST(AmbientForecast, NamesWhatIsWrong) {
         {changed("/hourly/time/1", 5), "hourly.time[1] is no time"},
         {changed("/hourly/time/2", "2026-07-01T03:00"), "hourly.time[2] does not come an hour after"},
         {changed("/hourly/precipitation", {0.0, 1.0}), "hourly.precipitation has 2 values, and hourly.time 3"},
-        {changed("/hourly/wind_speed_10m/2", nullptr), "hourly.wind_speed_10m[2] is null"},
-        {changed("/hourly/visibility/0", nullptr), "leave this list out"},
+        {changed("/hourly/wind_speed_10m", {nullptr, nullptr, nullptr}), "has no hour of which"},
         {changed("/hourly/temperature_2m/0", "warm"), "hourly.temperature_2m[0] is not a number"},
         {changed("/hourly/temperature_2m/0", 1e300), "hourly.temperature_2m[0] is 1e+300, out of range"},
         {changed("/hourly/cloud_cover/0", 101), "hourly.cloud_cover[0] is 101, out of range"},

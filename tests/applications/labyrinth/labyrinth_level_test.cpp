@@ -1,3 +1,4 @@
+#include <fstream>
 #include <random>
 #include <set>
 #include <string>
@@ -10,6 +11,7 @@
 #include "core/base/error.h"
 #include "core/base/resources.h"
 #include "core/rig/rig_file.h"
+#include "tests/core/temporary_folder.h"
 
 // R39: levels as text, read with the place of every mistake, and as the solid pieces that the ball rolls on.
 
@@ -141,6 +143,22 @@ double literalHeight(const Level& level, const glm::dvec2& place) {
     default:
         return here.height * level.step;
     }
+}
+
+TEST(LabyrinthLevel, IsReadAsEditorsOfOtherSystemsWriteIt) {
+    const Level level = readLevel(kSmall, "small");
+    std::string lines, wide = "\xFF\xFE";
+    for (const char c : std::string(kSmall)) {
+        if (c == '\n') lines += '\r';
+        lines += c;
+    }
+    for (const char c : lines) (wide += c) += '\0';
+    for (const std::string& text : {"\xEF\xBB\xBF" + std::string(kSmall), "\xEF\xBB\xBF" + lines, lines, wide})
+        EXPECT_EQ(readLevel(text, "small"), level);
+    const TemporaryFolder folder;
+    std::ofstream(folder / "wide.txt", std::ios::binary) << wide;
+    EXPECT_EQ(readLevelFile(folder / "wide.txt"), level);
+    EXPECT_EQ(readUnfinishedLevel(folder / "wide.txt"), level);
 }
 
 TEST(LabyrinthLevel, BlocksLieWhereTheMapSays) {

@@ -11,7 +11,7 @@
 #include "core/base/error.h"
 #include "core/base/file.h"
 #include "core/base/resources.h"
-#include "core/geometry/model.h"
+#include "core/geometry/gltf_reader.h"
 #include "core/rig/rig_file.h"
 #include "tests/core/file_size_limit.h"
 #include "tests/core/temporary_folder.h"
@@ -167,9 +167,45 @@ TEST_F(TakeAsset, AGltfBringsNothingFromOutsideItsFolder) {
             GltfBuilder builder = GltfBuilder::triangle();
             builder.document[list] = {{{"byteLength", 6}, {"uri", uri}}};
             write(source / "cow.gltf", builder.document.dump());
+            // A picture that is not there is left behind, and the model taken without it.
+            const bool leftBehind = list == std::string("images") &&
+                                    (uri == std::string("missing.bin") || uri == std::string("file:///etc/passwd"));
+            if (leftBehind) {
+                EXPECT_EQ(takeAsset(project, source / "cow.gltf"), "fish files/cow.gltf");
+                EXPECT_THAT(contents(), ElementsAre("fish files/cow.gltf"));
+                fs::remove_all(home / "fish files");
+                continue;
+            }
             EXPECT_THROW((void)takeAsset(project, source / "cow.gltf"), DataError);
             EXPECT_TRUE(fs::is_empty(home));
         }
+    }
+}
+
+TEST_F(TakeAsset, AGltfBringsWhatItNamesInAnotherFormOrCase) {
+    fs::create_directories(source / "Textures");
+    write(source / "Textures/Ma\u0308rz.png", "picture"); // decomposed, as macOS keeps it
+    GltfBuilder builder = GltfBuilder::triangle();
+    write(source / "mesh.BIN", {reinterpret_cast<const char*>(builder.binary.data()), builder.binary.size()});
+    builder.document["buffers"] = {{{"byteLength", builder.binary.size()}, {"uri", "mesh.bin"}}};
+    builder.document["images"] = {{{"uri", "textures\\M\u00E4rz.png"}}};
+    write(source / "cow.gltf", builder.document.dump());
+    EXPECT_EQ(takeAsset(project, source / "cow.gltf"), "fish files/cow/cow.gltf");
+    EXPECT_TRUE(readModel(home / "fish files/cow/cow.gltf") == readModel(source / "cow.gltf"));
+    EXPECT_THAT(readModelFile(home / "fish files/cow/cow.gltf").warnings, ::testing::IsEmpty());
+}
+
+TEST_F(TakeAsset, AnAssetIsFoundInAnotherFormOrCaseAndItsNearNameTold) {
+    write(home / "Models/Ku\u0308ste.glb", "coast");
+    write(home / "dunes.glb", "dunes");
+    for (const char* asset : {"Models/Ku\u0308ste.glb", "Models/K\u00FCste.glb", "models/K\u00DCSTE.GLB",
+                              "models\\K\u00FCste.glb", "a/../Models/K\u00FCste.glb"})
+        EXPECT_EQ(assetPath(project, asset), fs::canonical(home / "Models/Ku\u0308ste.glb")) << asset;
+    try {
+        (void)assetPath(project, "fish files/dunes.glb");
+        ADD_FAILURE() << "was found";
+    } catch (const DataError& error) {
+        EXPECT_THAT(error.why(), HasSubstr("is not there, but 'dunes.glb' lies beside the project"));
     }
 }
 

@@ -1,9 +1,14 @@
 #include <cmath>
+#include <cstddef>
+#include <filesystem>
 #include <numbers>
+#include <string>
+#include <vector>
 
 #include <gtest/gtest.h>
 
 #include "core/base/error.h"
+#include "core/base/file.h"
 #include "core/rig/templates/sheet_outline.h"
 
 namespace lumorph {
@@ -78,6 +83,32 @@ TEST(SvgOutlinePlace, IsOnThePageInMetres) {
         svgOutline("<svg width='10cm' viewBox='-5 -5 10 10'><rect x='-5' y='0' width='5' height='5'/></svg>", "c.svg");
     EXPECT_NEAR(boxed[0].x, 0.0, 1e-12);
     EXPECT_NEAR(boxed[0].y, 0.05, 1e-12);
+}
+
+TEST(SvgOutlinePlace, IsTheSameInUtf16) {
+    const std::string plain = page("<rect x='10' y='20' width='60' height='40'/>");
+    for (const bool big : {false, true}) {
+        std::string wide = big ? "\xFE\xFF" : "\xFF\xFE";
+        for (const char c : plain) {
+            if (big) wide += '\0';
+            wide += c;
+            if (!big) wide += '\0';
+        }
+        EXPECT_EQ(svgOutline(wide, "wide.svg"), svgOutline(plain, "plain.svg"));
+    }
+}
+
+// Inputs of ../shared/data/cases, whose right values stand in FACTS.md there.
+TEST(SvgOutlinePlace, TheCasesAreARectangleInMillimetres) {
+    const std::filesystem::path folder = std::filesystem::path(LUMORPH_SHARED_DIR) / "data/cases/svg";
+    if (!std::filesystem::exists(folder)) GTEST_SKIP() << "without ../shared/data/cases";
+    for (const char* name : {"mm-viewbox.svg", "utf16.svg"}) {
+        const std::vector<std::byte> bytes = readFile(folder / name, 10'000);
+        const auto outline = svgOutline({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, name);
+        EXPECT_NEAR(1e6 * area(outline), 160.0 * 100.0, 1e-6) << name;
+        EXPECT_NEAR(outline[0].x, 0.020, 1e-12) << name;
+        EXPECT_NEAR(outline[0].y, 0.020, 1e-12) << name;
+    }
 }
 
 TEST(SvgOutlineErrors, NameTheDrawingAndWhatIsWrong) {
