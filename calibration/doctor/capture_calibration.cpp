@@ -18,6 +18,7 @@
 #include "calibration/doctor/repeated_poses.h"
 #include "calibration/doctor/sequence_check.h"
 #include "calibration/doctor/stripe_check.h"
+#include "calibration/doctor/uneven_light.h"
 #include "calibration/doctor/view_check.h"
 
 namespace lumorph {
@@ -142,6 +143,7 @@ public:
     void throwIf(const std::optional<Finding>& finding) const {
         if (finding) throw CaptureRefused(all_.empty() ? *finding : all_.front());
     }
+    [[nodiscard]] bool has(Cause cause) const { return std::ranges::find(all_, cause, &Finding::cause) != all_.end(); }
     std::vector<Finding> take() { return std::move(all_); }
 
 private:
@@ -162,15 +164,22 @@ ReadPose readPose(const CapturedView& view, const std::vector<cv::Mat>& images, 
     if (sequence && !isBearable) throw CaptureRefused(*sequence);
     troubles.add(sequence);
     troubles.throwIf(checkStripes(view, images, order));
-    troubles.throwIf(checkPhases(view, images, order));
+    if (const auto phases = checkPhases(view, images, order); phases && phases->cause == Cause::phaseOrder) {
+        // Steps of another brightness look like steps in another order.
+        const SteadiedImages steady = steadied(images, order);
+        if (!checkPhases(view, steady.images, order)) throw CaptureRefused(driftFinding(view.name, "", steady.change));
+        troubles.throwIf(phases);
+    }
     DecodedView decoded = decodeView(images, order);
     troubles.add(checkDark(view.name, decoded));
     const std::optional<BoardPoints> found = findBoard(decoded.white, board);
+    if (found && board.kind == CalibrationBoard::Kind::chess)
+        troubles.add(checkSharpness(view.name, decoded.white, *found));
     const auto bright = checkLight(view.name, decoded);
     if (found)
         if (const auto moved = checkSteadiness(view, images, order, decoded.white, found->seen))
             troubles.throwIf(bright ? bright : moved); // what is cut off has no corners to compare
-    troubles.add(checkFocus(view.name, decoded, images, order));
+    if (!troubles.has(Cause::outOfFocus)) troubles.add(checkFocus(view.name, decoded, images, order));
     troubles.throwIf(checkBoardSize(view.name, decoded.white, board, found.has_value()));
     troubles.throwIf(
         checkProjectorSize(view.name, decoded, order.projector, found ? found->seen : std::vector<cv::Point2d>()));
@@ -273,6 +282,24 @@ void warnOfUnlikely(const ReadCapture& capture, cv::Size projector, ProcamCalibr
                                    "check the board's lengths, in millimetres"});
 }
 
+/// Whether phases, which tell shares of width and height, fit with the two exchanged.
+bool fitsExchanged(const ReadCapture& capture, cv::Size projector) {
+    constexpr double kFits = 0.5; // pixels
+    if (projector.width == projector.height) return false;
+    const double byWidth = static_cast<double>(projector.height) / projector.width;
+    std::vector<ViewObservations> views = capture.views;
+    for (ViewObservations& view : views)
+        for (ProjectorPoint& point : view.projector)
+            point.projector = {(point.projector.x + 0.5) * byWidth - 0.5, (point.projector.y + 0.5) / byWidth - 0.5};
+    SolveOptions quick;
+    quick.judge = false;
+    try {
+        return calibrateProcam(views, capture.camera, {projector.height, projector.width}, quick).projector.rms < kFits;
+    } catch (const CaptureRefused&) {
+        return false;
+    }
+}
+
 /// What single poses suffer from explains what no model fits.
 void throwTrouble(const ReadCapture& capture, const Finding& finding) {
     constexpr std::array kDustbins = {Cause::modelDoesNotFit, Cause::strangeLens, Cause::projectorSize,
@@ -280,7 +307,9 @@ void throwTrouble(const ReadCapture& capture, const Finding& finding) {
     constexpr std::array kTroubles = {Cause::outOfFocus, Cause::noisy, Cause::exposureDrifts, Cause::projectorGamma};
     if (std::ranges::find(kDustbins, finding.cause) == kDustbins.end()) return;
     for (const Finding& warning : capture.warnings)
-        if (std::ranges::find(kTroubles, warning.cause) != kTroubles.end()) throw CaptureRefused(warning);
+        if (std::ranges::find(kTroubles, warning.cause) != kTroubles.end() ||
+            (warning.cause == Cause::clipped && !isGrayCode(capture.order))) // stripes bear it, phases do not
+            throw CaptureRefused(warning);
 }
 
 } // namespace
@@ -313,6 +342,12 @@ ProcamCalibration calibrateCapture(const ReadCapture& capture, cv::Size projecto
         explain(distinct.views, order, result, progress.part(0.8, 1.0));
     } catch (const CaptureRefused& refused) {
         throwTrouble(capture, refused.finding());
+        if (hasPhases && fitsExchanged(distinct, projector))
+            throw CaptureRefused({Cause::widthHeightSwapped, "", "",
+                                  "the poses fit a projector of " + std::to_string(projector.height) + " x " +
+                                      std::to_string(projector.width) + ", not of " + std::to_string(projector.width) +
+                                      " x " + std::to_string(projector.height),
+                                  "exchange width and height"});
         throw;
     }
     repeatFor(capture.views, first, result);

@@ -197,12 +197,54 @@ bool turnsOver(const Turns& coarse) {
 
 std::string axisWords(PatternAxis axis) { return axis == PatternAxis::columns ? "columns" : "rows"; }
 
+/// Light swings by its mean at most, from none to twice of it; what swings more went through a curve.
+std::optional<Finding> bentByCurve(const CapturedView& view, const std::vector<cv::Mat>& images,
+                                   const std::vector<StepImages>& sets) {
+    constexpr float kMostSwing = 1.08F, kCut = 1.5F;
+    constexpr double kMostCut = 0.1;
+    for (const StepImages& set : sets) {
+        const cv::Mat1f amplitude = turnsOf(images, set.images).amplitude;
+        const float least = leastOf(amplitude);
+        std::vector<float> swings;
+        double cut = 0.0;
+        for (int y = 0; y < amplitude.rows; y += 3)
+            for (int x = 0; x < amplitude.cols; x += 3) {
+                if (amplitude(y, x) < least) continue;
+                float mean = 0.0F;
+                bool isCut = false;
+                for (const int i : set.images) {
+                    const float grey = images[static_cast<std::size_t>(i)].at<uchar>(y, x);
+                    mean += grey / static_cast<float>(set.images.size());
+                    isCut = isCut || grey < kCut;
+                }
+                swings.push_back(amplitude(y, x) / std::max(mean, 1.0F));
+                cut += isCut;
+            }
+        if (std::ssize(swings) < kFewestPlaces) continue;
+        const double share = cut / static_cast<double>(swings.size());
+        const auto middle = swings.begin() + static_cast<std::ptrdiff_t>(swings.size() / 2);
+        std::ranges::nth_element(swings, middle);
+        if (*middle < kMostSwing) continue;
+        const std::string file = view.files.at(static_cast<std::size_t>(set.images.front())).filename().string();
+        if (share > kMostCut)
+            return Finding{Cause::clipped, view.name, file,
+                           std::to_string(std::lround(100.0 * share)) + " % of what is seen is cut off at black",
+                           "expose for longer, or lower the camera's black level"};
+        return Finding{Cause::projectorGamma, view.name, file,
+                       "the phases swing by " + std::to_string(std::lround(100.0F * *middle)) +
+                           " % of their mean, which only a gamma does",
+                       "set the response of projector and camera to linear, or use Gray code"};
+    }
+    return std::nullopt;
+}
+
 class AxisCheck {
 public:
     AxisCheck(const CapturedView& view, const std::vector<cv::Mat>& images, const CaptureOrder& order, PatternAxis axis)
         : view_(view), images_(images), axis_(axis), sets_(setsOfAxis(order, axis)) {}
 
     [[nodiscard]] std::optional<Finding> finding() const {
+        if (auto bent = bentByCurve(view_, images_, sets_)) return bent;
         if (sets_.size() < 2 || sets_.front().periods != 1) return std::nullopt; // beats tell no more than they need
         for (std::size_t s = 0; s + 1 < sets_.size(); ++s)
             if (auto found = compared(sets_[s], sets_[s + 1])) return found;

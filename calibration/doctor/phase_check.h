@@ -10,9 +10,10 @@
 
 namespace lumorph {
 
-/// Looks for phase patterns that are not as said: another number of periods (`period_count`), steps in another order
-/// (`phase_order`). Both show where a set of phases is compared with the next coarser one. All sets of an axis reversed
-/// alike is a mirror image, which one pose alone does not tell. Nothing for Gray codes.
+/// Looks for phase patterns that are not as said: a curve under which they swing more than light can
+/// (`projector_gamma`, or `clipped` where that is cut off), another number of periods (`period_count`), steps in
+/// another order (`phase_order`). The last two show where a set of phases is compared with the next coarser one. All
+/// sets of an axis reversed alike is a mirror image, which one pose alone does not tell. Nothing for Gray codes.
 [[nodiscard]] std::optional<Finding> checkPhases(const CapturedView& view, const std::vector<cv::Mat>& images,
                                                  const CaptureOrder& order);
 

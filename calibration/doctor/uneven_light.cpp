@@ -173,9 +173,7 @@ std::optional<Finding> driftIn(const CapturedView& view, const Samples& samples)
                 step = std::abs(gains[here] - gains[static_cast<std::size_t>(before)]), at = i;
             before = i;
         }
-    return Finding{Cause::exposureDrifts, view.name, fileOfImage(view, at),
-                   "the brightness changes by " + percent(most / least - 1.0) + " within the pose, most at this image",
-                   "switch off automatic exposure and gain in the camera, let the lamp warm up, and capture again"};
+    return driftFinding(view.name, fileOfImage(view, at), most / least - 1.0);
 }
 
 /// The most uneven of the sets that can be judged; infinite where too few can.
@@ -374,9 +372,21 @@ Difference differenceIn(const cv::Mat1f& change) {
     return 3 * quiet > blocks && touched > 0 ? Difference::inPart : Difference::allOver;
 }
 
-std::vector<double> gainsOf(const std::vector<cv::Mat>& images, const CaptureOrder& order) {
+SteadiedImages steadied(const std::vector<cv::Mat>& images, const CaptureOrder& order) {
     const Samples samples = samplesOf(images, order);
-    return samples.isLit() ? gainsIn(samples) : std::vector<double>(images.size(), 1.0);
+    SteadiedImages all{images, 0.0};
+    if (!samples.isLit()) return all;
+    const std::vector<double> gains = gainsIn(samples);
+    const auto [least, most] = std::ranges::minmax(gains);
+    if (!(least > 0.0) || most > kMostGain * least) return all;
+    for (std::size_t i = 0; i < images.size(); ++i) images[i].convertTo(all.images[i], CV_8U, 1.0 / gains[i]);
+    all.change = most / least - 1.0;
+    return all;
+}
+
+Finding driftFinding(const std::string& view, const std::string& file, double change) {
+    return {Cause::exposureDrifts, view, file, "the brightness changes by " + percent(change) + " within the pose",
+            "switch off automatic exposure and gain in the camera, let the lamp warm up, and capture again"};
 }
 
 double pixelNoiseOf(const std::vector<cv::Mat>& images, const CaptureOrder& order) {

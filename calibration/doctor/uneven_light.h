@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <string>
 #include <vector>
 
 #include <opencv2/core.hpp>
@@ -24,9 +25,15 @@ namespace lumorph {
 [[nodiscard]] std::optional<Finding> causeInImages(const CapturedView& view, const std::vector<cv::Mat>& images,
                                                    const CaptureOrder& order);
 
-/// Brightness of each image that is of a set, against their mean: what makes all sets most alike, least squares.
-/// 1 for those of no set.
-[[nodiscard]] std::vector<double> gainsOf(const std::vector<cv::Mat>& images, const CaptureOrder& order);
+/// The images with the brightness that makes all sets most alike, least squares; and by how much that changes within
+/// the pose, as a share.
+struct SteadiedImages {
+    std::vector<cv::Mat> images;
+    double change = 0.0;
+};
+[[nodiscard]] SteadiedImages steadied(const std::vector<cv::Mat>& images, const CaptureOrder& order);
+/// What is told of it.
+[[nodiscard]] Finding driftFinding(const std::string& view, const std::string& file, double change);
 
 /// Noise of one image's grey, standard deviation, from neighbouring pixels of sets that should be alike.
 [[nodiscard]] double pixelNoiseOf(const std::vector<cv::Mat>& images, const CaptureOrder& order);

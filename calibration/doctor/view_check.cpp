@@ -265,6 +265,45 @@ std::optional<Finding> checkBoardSize(const std::string& view, const cv::Mat1b& 
                    "give the number of inner corners that the board has: one fewer than squares, both ways"};
 }
 
+std::optional<Finding> checkSharpness(const std::string& view, const cv::Mat1b& white, const BoardPoints& found) {
+    constexpr double kMostBlur = 2.5;   // standard deviation, pixels; sound captures have 0.7 to 1.5
+    constexpr double kLeastStep = 12.0; // grey levels
+    const auto greyAt = [&white](cv::Point2d at) {
+        cv::Mat1f patch;
+        cv::getRectSubPix(white, {1, 1}, cv::Point2f(at), patch, CV_32F);
+        return static_cast<double>(patch(0, 0));
+    };
+    std::vector<double> blurs;
+    for (std::size_t i = 0; i + 1 < found.seen.size(); ++i) {
+        if (found.board[i].y != found.board[i + 1].y) continue; // the next row begins
+        // Two corners of a square: the edge runs from one to the other, and is crossed in its middle.
+        const cv::Point2d along = found.seen[i + 1] - found.seen[i];
+        const double length = cv::norm(along);
+        if (length < 8.0) continue;
+        const cv::Point2d across(-along.y / length, along.x / length);
+        const cv::Point2d middle = 0.5 * (found.seen[i] + found.seen[i + 1]);
+        const double reach = 0.4 * length;
+        const double low = greyAt(middle - reach * across);
+        const double step = greyAt(middle + reach * across) - low;
+        if (std::abs(step) < kLeastStep) continue;
+        double first = reach;
+        double last = -reach;
+        for (double t = -reach; t <= reach; t += 0.25) {
+            const double share = (greyAt(middle + t * across) - low) / step;
+            if (share > 0.25) first = std::min(first, t);
+            if (share < 0.75) last = std::max(last, t);
+        }
+        blurs.push_back(std::max(0.0, last - first) / 1.35); // between the quartiles of a normal distribution
+    }
+    constexpr std::size_t kFewestEdges = 8;
+    if (blurs.size() < kFewestEdges) return std::nullopt;
+    const double blur = medianOfNumbers(blurs);
+    if (blur < kMostBlur) return std::nullopt;
+    return Finding{Cause::outOfFocus, view, "",
+                   "edges of the board are blurred over " + std::to_string(std::lround(3.0 * blur)) + " pixels",
+                   "focus camera and projector on the board, and hold it still"};
+}
+
 std::optional<Finding> checkFocus(const std::string& view, const DecodedView& decoded,
                                   const std::vector<cv::Mat>& images, const CaptureOrder& order) {
     constexpr double kWide = 4.5; // camera pixels of a stripe that any camera resolves

@@ -24,6 +24,10 @@ namespace lumorph {
 [[nodiscard]] std::optional<Finding> checkBoardSize(const std::string& view, const cv::Mat1b& white,
                                                     const CalibrationBoard& board, bool found);
 
+/// Whether the edges of a chessboard's squares are blurred over several pixels of the camera.
+[[nodiscard]] std::optional<Finding> checkSharpness(const std::string& view, const cv::Mat1b& white,
+                                                    const BoardPoints& found);
+
 /// Whether stripes are blurred away that the camera's pixels would resolve.
 [[nodiscard]] std::optional<Finding> checkFocus(const std::string& view, const DecodedView& decoded,
                                                 const std::vector<cv::Mat>& images, const CaptureOrder& order);

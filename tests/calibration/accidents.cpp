@@ -188,7 +188,8 @@ class AccidentList {
 public:
     void add(std::string name, std::vector<Cause> expected, std::function<void(SpoiledCapture&, std::mt19937&)> spoil,
              Patterns patterns = Patterns::any, bool mayPass = true) {
-        all_.push_back({std::move(name), std::move(expected), mayPass, patterns, std::move(spoil)});
+        const bool isAsked = name == "phase steps 2 and 3 exchanged, all sets"; // as if it hung upside down
+        all_.push_back({std::move(name), std::move(expected), mayPass, patterns, std::move(spoil), isAsked});
     }
 
     void addSound() {

@@ -33,6 +33,7 @@ struct Accident {
     bool mayPass = true;
     enum class Patterns { any, gray, phase } patterns = Patterns::any;
     std::function<void(SpoiledCapture&, std::mt19937&)> spoil;
+    bool isAsked = false; ///< it may be right: accepted with a question, whatever it makes of the light
 };
 
 /// All kinds that are known, each with several amounts; the right key of each was written down before the code that
