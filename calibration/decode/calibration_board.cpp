@@ -190,6 +190,13 @@ double sideOf(const SeenMarker& marker) {
     return longest;
 }
 
+double shortSideOf(const SeenMarker& marker) {
+    double shortest = kLongest;
+    for (std::size_t i = 0; i < 4; ++i)
+        shortest = std::min(shortest, cv::norm(marker.seen[i] - marker.seen[(i + 1) % 4]));
+    return shortest;
+}
+
 /// Of what was seen, the markers that lie to one another as on such a board; fewer than two are none.
 std::vector<SeenMarker> markersOfBoard(const CalibrationBoard& board, const std::vector<int>& ids,
                                        const std::vector<std::vector<cv::Point2f>>& corners) {
@@ -245,8 +252,7 @@ BoardPoints cornersOf(const cv::Mat& grey, const CalibrationBoard& board, const 
     BoardPoints points;
     std::vector<cv::Point2f> guesses;
     std::vector<cv::Mat> homographies;
-    double side = 1e9;
-    for (const SeenMarker& marker : markers) side = std::min(side, sideOf(marker));
+    std::vector<double> reaches; // pixels around each in which nothing but squares is printed
     for (const cv::Point3d& corner : pointsOf(board)) {
         const auto squaresAway = [&](const SeenMarker* marker) {
             return std::max(std::abs(marker->square.x + 0.5 - corner.x / board.spacing),
@@ -264,18 +270,19 @@ BoardPoints cornersOf(const cv::Mat& grey, const CalibrationBoard& board, const 
         points.board.push_back(corner);
         guesses.emplace_back(guess);
         homographies.push_back(homography);
+        reaches.push_back(0.8 * gap * shortSideOf(*nearest.front()) / board.marker);
     }
     if (guesses.empty()) return {};
-    std::vector<cv::Point2f> seen = guesses;
-    const double reach = 0.8 * gap * side / board.marker; // pixels
-    refineCorners(grey, seen, reach);
     BoardPoints good;
-    for (std::size_t i = 0; i < seen.size(); ++i) {
-        if (cv::norm(seen[i] - guesses[i]) > std::max(2.0, reach)) continue;
+    for (std::size_t i = 0; i < guesses.size(); ++i) {
+        std::vector<cv::Point2f> seen{guesses[i]};
+        const double reach = reaches[i];
+        refineCorners(grey, seen, reach);
+        if (cv::norm(seen.front() - guesses[i]) > std::max(2.0, reach)) continue;
         const bool isLargeEnough = reach > 2.5; // to look beside the corner
         if (isLargeEnough && !isCornerInSight(grey, homographies[i], points.board[i], 0.6 * gap)) continue;
         good.board.push_back(points.board[i]);
-        good.seen.emplace_back(seen[i]);
+        good.seen.emplace_back(seen.front());
     }
     return good;
 }
