@@ -46,8 +46,14 @@ BegunProgram beginProgram(const Demo& demo, const ProgramWish& wish, const Progr
     checkTold(demo, wish.told);
     BegunProgram begun;
     if (!demo.program) return begun;
-    ProgramStart start{wish.seed, wish.told, {}, {}, [&begun](const std::string& note) { begun.notes.push_back(note); },
-                       wish.feed};
+    ProgramStart start{
+        wish.seed,
+        wish.told,
+        {},
+        {},
+        [&begun](const std::string& note) { begun.notes.push_back(note); },
+        wish.feed,
+        [&begun](const std::string& name, const std::string& json) { begun.figures.emplace_back(name, json); }};
     std::error_code unknown;
     if (demo.keeps && !wish.kept.empty() && fs::exists(wish.kept, unknown)) {
         const std::string file = wish.kept.string();

@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "app/applications/demo.h"
@@ -14,9 +15,10 @@ namespace lumorph {
 /// A demonstration's program, begun with what it is told and what it wanted kept the last time.
 struct BegunProgram {
     std::unique_ptr<ShowProgram> program;
-    std::vector<std::string> notes; ///< what there is to say of the start
-    std::string problem;            ///< why what was kept is not used; empty: it is, or there is none
-    std::filesystem::path aside;    ///< where that lies now
+    std::vector<std::string> notes;                           ///< what there is to say of the start
+    std::vector<std::pair<std::string, std::string>> figures; ///< the same for programs: names and JSON values
+    std::string problem;         ///< why what was kept is not used; empty: it is, or there is none
+    std::filesystem::path aside; ///< where that lies now
 };
 
 /// How a program begins, beside what Demo knows of it.

@@ -270,6 +270,7 @@ ShowScript scriptOf(const Demo& demo, const DemoPlay& play, std::vector<std::str
     BegunProgram begun = beginProgram(demo, {play.seed, play.told, play.kept});
     script.language = play.language;
     script.notes = std::move(begun.notes);
+    script.figures = std::move(begun.figures);
     script.program = std::move(begun.program);
     if (!begun.problem.empty())
         warnings.push_back(play.kept.string() + ": " + begun.problem + "; it lies in " + begun.aside.string() + " now");
@@ -290,13 +291,14 @@ void playDemo(const Demo& demo, const DemoPlay& play, std::ostream& out, const P
     rates.warnings.insert(rates.warnings.begin(), warnings.begin(), warnings.end());
     if (!play.kept.empty() && rates.keepsake) writeKeepsake(play.kept, rates.keepsake());
     if (play.json) {
-        const nlohmann::json value{{"demo", demo.name},
-                                   {"seconds", play.seconds},
-                                   {"frames", rates.frames},
-                                   {"framesPerSecond", rates.framesPerSecond},
-                                   {"ms", {{"loop", rates.loopMilliseconds}, {"passes", rates.passMilliseconds}}},
-                                   {"record", play.video.string()},
-                                   {"warnings", rates.warnings}};
+        nlohmann::json value{{"demo", demo.name},
+                             {"seconds", play.seconds},
+                             {"frames", rates.frames},
+                             {"framesPerSecond", rates.framesPerSecond},
+                             {"ms", {{"loop", rates.loopMilliseconds}, {"passes", rates.passMilliseconds}}},
+                             {"record", play.video.string()},
+                             {"warnings", rates.warnings}};
+        for (const auto& [name, json] : script.figures) value[name] = nlohmann::json::parse(json);
         out << value.dump(2) << std::endl;
         return;
     }

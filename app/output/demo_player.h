@@ -6,6 +6,7 @@
 #include <iosfwd>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <glm/vec2.hpp>
@@ -30,6 +31,7 @@ struct ShowScript {
     InputScript inputs;
     Language language = Language::english; ///< in which it writes
     std::vector<std::string> notes;        ///< of the application about what it was told, plain sentences
+    std::vector<std::pair<std::string, std::string>> figures; ///< the same for programs: names and JSON values
 };
 
 /// What came of it.

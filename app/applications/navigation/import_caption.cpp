@@ -29,6 +29,7 @@ ShowCaption importCaption(const MapReport& report, const std::string& name) {
     count(told, report.roads, {"road", "Straße"}, {"roads", "Straßen"});
     count(told, report.places, {"place", "Ort"}, {"places", "Orte"});
     count(told, report.mended, {"outline mended", "Umriss berichtigt"}, {"outlines mended", "Umrisse berichtigt"});
+    count(told, report.closed, {"ring closed", "Ring geschlossen"}, {"rings closed", "Ringe geschlossen"});
     count(told, report.leftOut, {"thing left out", "Ding weggelassen"}, {"things left out", "Dinge weggelassen"});
     if (report.filled > 0.0) {
         const std::string percent = std::to_string(std::max(1L, std::lround(100.0 * report.filled)));

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -65,6 +66,9 @@ struct Building {
     bool windows = false;   ///< in its walls, storey over storey
     bool landmark = false;  ///< never left out from afar
     bool grounded = true;   ///< stands on the ground as it is drawn; false: at its height, on water or in the air
+    double over = 0.0;      ///< metres of air below it, over that ground: an upper part of something
+    /// Middle of the building of which this is a convex piece: all of them stand and grow as one.
+    std::optional<glm::dvec2> whole;
 };
 
 struct Road {

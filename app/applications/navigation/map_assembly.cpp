@@ -12,22 +12,20 @@
 #include "app/applications/navigation/noise.h"
 #include "app/applications/navigation/shapes.h"
 #include "core/base/error.h"
-#include "core/geometry/polygon_triangulation.h"
 
 namespace lumorph::navigation {
 namespace {
 
-constexpr double kUnknownHeight = 6.0;    ///< metres, of a building
-constexpr double kSmallest = 4.0;         ///< square metres of an outline
-constexpr int kLevelSamples = 129;        ///< of ground without heights, along its longer side
-constexpr std::size_t kMostCorners = 400; ///< of an outline
+constexpr double kUnknownHeight = 6.0;     ///< metres, of a building
+constexpr double kSmallest = 4.0;          ///< square metres of an outline
+constexpr int kLevelSamples = 129;         ///< of ground without heights, along its longer side
+constexpr std::size_t kMostCorners = 1000; ///< of an outline
 
 /// Rounds in which each missing height becomes the mean of its known neighbours.
-double fillHoles(glm::ivec2 samples, std::vector<float>& heights) {
+void fillHoles(glm::ivec2 samples, std::vector<float>& heights) {
     std::vector<std::size_t> missing;
     for (std::size_t k = 0; k < heights.size(); ++k)
         if (!std::isfinite(heights[k])) missing.push_back(k);
-    const double share = static_cast<double>(missing.size()) / static_cast<double>(heights.size());
     const auto columns = static_cast<std::size_t>(samples.x);
     while (!missing.empty()) {
         std::vector<std::pair<std::size_t, float>> found;
@@ -53,11 +51,42 @@ double fillHoles(glm::ivec2 samples, std::vector<float>& heights) {
         for (const auto& [k, height] : found) heights[k] = height;
         missing = std::move(left);
     }
-    return share;
+}
+
+double medianOf(std::vector<double> values, double share = 0.5) {
+    const auto at = static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
+    std::ranges::nth_element(values, values.begin() + at);
+    return values[static_cast<std::size_t>(at)];
+}
+
+/// Leaves out what lies far from nearly all: one house at 0 degrees would make a map of half a continent.
+void leaveOutTheFar(MapSources& sources, MapReport& report) {
+    constexpr double kMost = 0.9, kFarther = 10.0, kNear = 5000.0; ///< share; times as far as those; metres
+    std::vector<double> x, y, distances;
+    const auto each = [&](const auto& use) {
+        for (const auto& outline : sources.outlines) use(outline.ring.front());
+        for (const auto& line : sources.lines) use(line.points.empty() ? glm::dvec2(0.0) : line.points.front());
+        for (const auto& name : sources.names) use(name.at);
+    };
+    each([&](const glm::dvec2& p) {
+        x.push_back(p.x);
+        y.push_back(p.y);
+    });
+    if (x.empty()) return;
+    const glm::dvec2 middle(medianOf(x), medianOf(y));
+    each([&](const glm::dvec2& p) { distances.push_back(glm::distance(p, middle)); });
+    const double far = kFarther * medianOf(distances, kMost) + kNear;
+    const auto isFar = [&](const glm::dvec2& p) { return !(glm::distance(p, middle) <= far); };
+    report.leftOut +=
+        std::erase_if(sources.outlines, [&](const auto& outline) { return isFar(outline.ring.front()); }) +
+        std::erase_if(sources.lines,
+                      [&](const auto& line) { return line.points.empty() || isFar(line.points.front()); }) +
+        std::erase_if(sources.names, [&](const auto& name) { return isFar(name.at); });
 }
 
 /// Level ground under all that there is.
 void levelGround(MapSources& sources, MapReport& report) {
+    leaveOutTheFar(sources, report);
     glm::dvec2 min(std::numeric_limits<double>::infinity()), max = -min;
     const auto take = [&](const glm::dvec2& p) {
         min = glm::min(min, p);
@@ -117,45 +146,37 @@ void addColors(Map& map) {
         }
 }
 
-bool isConvex(const std::vector<glm::dvec2>& ring) {
-    for (std::size_t k = 0; k < ring.size(); ++k) {
-        const glm::dvec2 a = ring[(k + 1) % ring.size()] - ring[k];
-        const glm::dvec2 b = ring[(k + 2) % ring.size()] - ring[(k + 1) % ring.size()];
-        if (a.x * b.y - a.y * b.x < -1e-9) return false;
-    }
-    return true;
+/// A roof with a ridge along the longer sides, where the outline has four; else a flat one of the same height.
+void addRoof(Building& building, const BuildingShape& shape) {
+    std::vector<glm::dvec2>& outline = building.outline;
+    const bool ridged = outline.size() == 4 || shape.form == Building::Roof::pyramid;
+    if (building.whole || shape.form == Building::Roof::flat || !(shape.roof > 0.0) || !ridged) return;
+    building.roof = shape.form;
+    building.eaves = building.ridge - shape.roof;
+    if (outline.size() == 4 && glm::distance(outline[1], outline[2]) > glm::distance(outline[0], outline[1]))
+        std::ranges::rotate(outline, outline.begin() + 1);
 }
 
-std::vector<std::vector<glm::dvec2>> convexParts(const std::vector<glm::dvec2>& ring) {
-    if (isConvex(ring)) return {ring};
-    std::vector<glm::vec3> positions;
-    std::vector<std::uint32_t> corners;
-    for (const glm::dvec2& p : ring) {
-        corners.push_back(static_cast<std::uint32_t>(positions.size()));
-        positions.emplace_back(glm::vec2(p - ring.front()), 0.0F);
-    }
-    std::vector<glm::uvec3> triangles;
-    triangulatePolygon(positions, corners, triangles);
-    std::vector<std::vector<glm::dvec2>> parts;
-    for (const glm::uvec3& t : triangles) {
-        std::vector<glm::dvec2> part{ring[t.x], ring[t.y], ring[t.z]};
-        if (doubleArea(part) < 0.0) std::swap(part[1], part[2]);
-        if (doubleArea(part) > 0.1) parts.push_back(std::move(part));
-    }
-    return parts;
-}
-
-void addBuilding(Map& map, std::vector<glm::dvec2> ring, double height, std::size_t number) {
+void addBuilding(Map& map, const std::vector<glm::dvec2>& ring, const std::vector<std::vector<glm::dvec2>>& holes,
+                 const BuildingShape& shape, std::size_t number) {
     constexpr Paint kTops[] = {Paint::tile, Paint::brick, Paint::slate, Paint::ochre, Paint::rust};
     double base = std::numeric_limits<double>::infinity();
-    for (const glm::dvec2& p : ring) base = std::min(base, map.heights.at(p, 0.0));
-    for (std::vector<glm::dvec2>& part : convexParts(ring)) {
+    glm::dvec2 middle(0.0);
+    for (const glm::dvec2& p : ring) {
+        base = std::min(base, map.heights.at(p, 0.0));
+        middle += p / static_cast<double>(ring.size());
+    }
+    std::vector<std::vector<glm::dvec2>> parts = convexParts(ring, holes);
+    for (std::vector<glm::dvec2>& part : parts) {
         Building building;
         building.outline = std::move(part);
         building.base = base;
-        building.eaves = building.ridge = base + height;
+        building.over = shape.from;
+        building.eaves = building.ridge = base + shape.height.value_or(kUnknownHeight + shape.from);
         building.walls = Paint::cream;
         building.top = kTops[number % std::size(kTops)];
+        if (parts.size() > 1) building.whole = middle;
+        addRoof(building, shape);
         map.buildings.push_back(std::move(building));
     }
 }
@@ -186,7 +207,7 @@ public:
                                        "Von " + all + " Gebäuden sind die " + shown + " größten zu sehen.");
             order.resize(kMostBuildings);
         }
-        for (const auto& [area, k] : order) add(sources_.outlines[k], std::move(rings[k]), k);
+        for (const auto& [area, k] : order) add(sources_.outlines[k], rings[k], k);
     }
 
     void addLines() {
@@ -232,12 +253,14 @@ private:
         const glm::dvec2 size = map_.heights.size();
         return p.x >= 0.0 && p.y >= 0.0 && p.x <= size.x && p.y <= size.y;
     }
-    void add(const MapSources::Outline& outline, std::vector<glm::dvec2> ring, std::size_t number) {
-        if (!outline.height) ++report_.heightMissing;
+    void add(const MapSources::Outline& outline, const std::vector<glm::dvec2>& ring, std::size_t number) {
+        if (!outline.shape.height) ++report_.heightMissing;
         glm::dvec2 middle(0.0);
         for (const glm::dvec2& p : ring) middle += p / static_cast<double>(ring.size());
         if (!outline.name.empty()) map_.places.push_back({outline.name, middle, 500.0, 4});
-        addBuilding(map_, std::move(ring), outline.height.value_or(kUnknownHeight), number);
+        std::vector<std::vector<glm::dvec2>> holes;
+        for (const auto& hole : outline.holes) holes.push_back(placesOf(hole));
+        addBuilding(map_, ring, holes, outline.shape, number);
         ++report_.buildings;
     }
     void addSummit() {
@@ -271,6 +294,8 @@ void tell(MapReport& report) {
           "Gebäude haben in der Datei keine Höhe und werden 6 m hoch gezeigt."});
     note(report.mended, {"outline crossed itself and was mended.", "Umriss kreuzte sich selbst und wurde berichtigt."},
          {"outlines crossed themselves and were mended.", "Umrisse kreuzten sich selbst und wurden berichtigt."});
+    note(report.closed, {"ring was not closed and was closed.", "Ring war offen und wurde geschlossen."},
+         {"rings were not closed and were closed.", "Ringe waren offen und wurden geschlossen."});
     note(report.leftOut,
          {"thing was left out: beyond the ground, too small, or without a usable outline.",
           "Ding fehlt: jenseits des Bodens, zu klein oder ohne brauchbaren Umriss."},
@@ -278,9 +303,10 @@ void tell(MapReport& report) {
           "Dinge fehlen: jenseits des Bodens, zu klein oder ohne brauchbaren Umriss."});
     if (report.filled > 0.0) {
         char share[16];
-        (void)std::snprintf(share, sizeof share, "%.2f", 100.0 * report.filled);
-        const std::string percent(share);
-        std::string withComma = percent;
+        (void)std::snprintf(share, sizeof share, "%.2f", std::max(100.0 * report.filled, 0.01));
+        const bool few = report.filled < 0.0001;
+        const std::string percent = (few ? "Less than " : "") + std::string(share);
+        std::string withComma = (few ? "Weniger als " : "") + std::string(share);
         std::ranges::replace(withComma, '.', ',');
         report.notes.emplace_back(percent + " % of the heights were missing and are filled from around.",
                                   withComma + " % der Höhen fehlten und sind aus ihrer Umgebung ergänzt.");
@@ -293,7 +319,7 @@ Map assembled(MapSources sources, MapReport& report) {
     if (sources.heights.empty())
         levelGround(sources, report);
     else
-        report.filled = fillHoles(sources.samples, sources.heights);
+        fillHoles(sources.samples, sources.heights);
     Map map;
     map.heights = HeightMap(sources.samples, sources.spacing, sources.heights);
     addSea(map);

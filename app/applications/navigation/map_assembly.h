@@ -1,11 +1,11 @@
 #pragma once
 
-#include <optional>
 #include <string>
 #include <vector>
 
 #include <glm/vec2.hpp>
 
+#include "app/applications/navigation/building_tags.h"
 #include "app/applications/navigation/map.h"
 #include "app/applications/navigation/map_import.h"
 
@@ -20,8 +20,9 @@ struct MapSources {
     glm::dvec2 origin{0.0}; ///< of the north-western sample
 
     struct Outline {
-        std::vector<glm::dvec2> ring; ///< without its first corner again at the end
-        std::optional<double> height; ///< metres
+        std::vector<glm::dvec2> ring;               ///< without its first corner again at the end
+        std::vector<std::vector<glm::dvec2>> holes; ///< courtyards, the same way
+        BuildingShape shape;
         Words name;
     };
     struct Line {

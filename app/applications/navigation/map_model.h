@@ -1,11 +1,8 @@
 #pragma once
 
-#include <memory>
-
 #include "app/applications/navigation/ground_picture.h"
 #include "app/applications/navigation/map.h"
 #include "app/applications/navigation/view_ground.h"
-#include "core/base/image.h"
 #include "core/scene/material.h"
 #include "core/scene/scene_assets.h"
 
@@ -13,14 +10,7 @@ namespace lumorph::navigation {
 
 inline constexpr const char* kGroundImage = "navigation ground"; ///< assets that are in memory alone
 inline constexpr const char* kReliefImage = "navigation relief";
-inline constexpr const char* kPaletteImage = "navigation palette";
 inline constexpr double kFloor = 0.004; ///< y of the foot of the block of land, device metres
-
-/// All paints, as a picture whose cells are looked up by `paintPlace`.
-[[nodiscard]] std::shared_ptr<const Image> paletteImage();
-[[nodiscard]] glm::vec2 paintPlace(Paint paint) noexcept;
-[[nodiscard]] glm::vec2 paintPlace(Paint paint, int shade) noexcept;
-[[nodiscard]] glm::vec3 colorOf(Paint paint) noexcept; ///< sRGB
 
 /// Of rivers and lakes; its pictures are bundled.
 [[nodiscard]] Material waterMaterial();

@@ -16,6 +16,7 @@
 #include "app/applications/navigation/map_import.h"
 #include "app/applications/navigation/map_model.h"
 #include "app/applications/navigation/noise.h"
+#include "app/applications/navigation/palette.h"
 #include "app/applications/navigation/search.h"
 #include "app/applications/navigation/valley.h"
 #include "core/base/error.h"
@@ -122,6 +123,7 @@ std::unique_ptr<ShowProgram> begin(const ProgramStart& start, const Progress& pr
     } else {
         ImportedMap imported = importMap(map->second, progress);
         for (const Words& note : imported.report.notes) start.note(note.english); // a host's language
+        start.figures("map", figuresOf(imported));
         report = importCaption(imported.report, std::filesystem::path(map->second).filename().string());
         shown = std::make_shared<const Map>(std::move(imported.map));
     }

@@ -2,11 +2,18 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <functional>
 #include <limits>
 #include <numbers>
+#include <numeric>
+#include <utility>
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
+#include <glm/vec3.hpp>
+
+#include "core/geometry/polygon_triangulation.h"
 
 namespace lumorph::navigation {
 namespace {
@@ -24,6 +31,21 @@ bool apart(const std::vector<glm::dvec2>& a, const std::vector<glm::dvec2>& b) n
         for (const glm::dvec2& corner : a) most = std::max(most, glm::dot(corner, outward));
         for (const glm::dvec2& corner : b) least = std::min(least, glm::dot(corner, outward));
         if (least >= most) return true;
+    }
+    return false;
+}
+
+double turnAt(const glm::dvec2& a, const glm::dvec2& b, const glm::dvec2& p) {
+    return (b.x - a.x) * (p.y - a.y) - (b.y - a.y) * (p.x - a.x);
+}
+
+/// Whether a ring crosses a line, or touches it anywhere but in its ends.
+bool crosses(const std::vector<glm::dvec2>& ring, const glm::dvec2& from, const glm::dvec2& to) {
+    for (std::size_t k = 0; k < ring.size(); ++k) {
+        const glm::dvec2 &a = ring[k], &b = ring[(k + 1) % ring.size()];
+        if (a == from || a == to || b == from || b == to) continue;
+        if (turnAt(from, to, a) * turnAt(from, to, b) <= 0.0 && turnAt(a, b, from) * turnAt(a, b, to) <= 0.0)
+            return true;
     }
     return false;
 }
@@ -87,6 +109,70 @@ double doubleArea(const std::vector<glm::dvec2>& outline) noexcept {
         sum += a.x * b.y - b.x * a.y;
     }
     return sum;
+}
+
+bool isConvex(const std::vector<glm::dvec2>& outline) noexcept {
+    const std::size_t count = outline.size();
+    for (std::size_t k = 0; k < count; ++k) {
+        const glm::dvec2 a = outline[(k + 1) % count] - outline[k];
+        const glm::dvec2 b = outline[(k + 2) % count] - outline[(k + 1) % count];
+        if (a.x * b.y - a.y * b.x < -1e-9) return false;
+    }
+    return true;
+}
+
+std::vector<glm::dvec2> bridged(std::vector<glm::dvec2> outline, std::vector<std::vector<glm::dvec2>> holes) {
+    std::erase_if(holes, [](const auto& hole) { return hole.size() < 3; });
+    const auto eastmost = [](const std::vector<glm::dvec2>& hole) {
+        return std::ranges::max_element(hole, {}, &glm::dvec2::x);
+    };
+    // From the east, so that a hole's bridge never has to pass one that is not joined yet.
+    std::ranges::sort(holes, std::ranges::greater(), [&](const auto& hole) { return eastmost(hole)->x; });
+    const bool clockwise = doubleArea(outline) > 0.0;
+    for (std::size_t h = 0; h < holes.size(); ++h) {
+        std::vector<glm::dvec2>& hole = holes[h];
+        if ((doubleArea(hole) > 0.0) == clockwise) std::ranges::reverse(hole); // round the other way
+        std::ranges::rotate(hole, hole.begin() + (eastmost(hole) - hole.cbegin()));
+        const glm::dvec2 from = hole.front();
+        std::vector<std::size_t> order(outline.size());
+        std::iota(order.begin(), order.end(), std::size_t{0});
+        std::ranges::sort(order, {}, [&](std::size_t k) { return glm::distance(outline[k], from); });
+        const auto isFree = [&](std::size_t k) {
+            if (crosses(outline, from, outline[k])) return false;
+            return std::all_of(holes.begin() + static_cast<std::ptrdiff_t>(h), holes.end(),
+                               [&](const auto& other) { return !crosses(other, from, outline[k]); });
+        };
+        const auto isPassedOnce = [&](std::size_t k) { return std::ranges::count(outline, outline[k]) == 1; };
+        auto found = std::ranges::find_if(order, [&](std::size_t k) { return isPassedOnce(k) && isFree(k); });
+        if (found == order.end()) found = std::ranges::find_if(order, isFree);
+        const auto at = static_cast<std::ptrdiff_t>(found == order.end() ? order.front() : *found);
+        std::vector<glm::dvec2> way(hole);
+        way.push_back(from);
+        way.push_back(outline[static_cast<std::size_t>(at)]);
+        outline.insert(outline.begin() + at + 1, way.begin(), way.end());
+    }
+    return outline;
+}
+
+std::vector<std::vector<glm::dvec2>> convexParts(const std::vector<glm::dvec2>& outline,
+                                                 const std::vector<std::vector<glm::dvec2>>& holes) {
+    if (holes.empty() && isConvex(outline)) return {outline};
+    const std::vector<glm::dvec2> ring = bridged(outline, holes);
+    std::vector<glm::vec3> positions;
+    std::vector<std::uint32_t> corners;
+    for (const glm::dvec2& p : ring) {
+        corners.push_back(static_cast<std::uint32_t>(positions.size()));
+        positions.emplace_back(glm::vec2(p - ring.front()), 0.0F);
+    }
+    std::vector<glm::uvec3> triangles;
+    triangulatePolygon(positions, corners, triangles);
+    std::vector<std::vector<glm::dvec2>> parts;
+    for (const glm::uvec3& t : triangles) {
+        std::vector<glm::dvec2> part{ring[t.x], ring[t.y], ring[t.z]};
+        if (doubleArea(part) < 0.0) std::swap(part[1], part[2]);
+        if (doubleArea(part) > 0.1) parts.push_back(std::move(part));
+    }
+    return parts;
 }
 
 double smoothStep(double from, double to, double value) noexcept {

@@ -30,6 +30,15 @@ struct Nearest {
 /// Whether two convex outlines have some ground in common (separating axes).
 [[nodiscard]] bool overlap(const std::vector<glm::dvec2>& a, const std::vector<glm::dvec2>& b) noexcept;
 
+/// An outline and its holes as one ring, joined by bridges that are passed twice (for `triangulatePolygon`).
+[[nodiscard]] std::vector<glm::dvec2> bridged(std::vector<glm::dvec2> outline,
+                                              std::vector<std::vector<glm::dvec2>> holes);
+
+/// Convex pieces, clockwise seen from above, that together cover an outline without its holes.
+[[nodiscard]] std::vector<std::vector<glm::dvec2>> convexParts(const std::vector<glm::dvec2>& outline,
+                                                               const std::vector<std::vector<glm::dvec2>>& holes);
+[[nodiscard]] bool isConvex(const std::vector<glm::dvec2>& outline) noexcept; ///< one that runs clockwise
+
 /// Twice the area, positive for clockwise seen from above.
 [[nodiscard]] double doubleArea(const std::vector<glm::dvec2>& outline) noexcept;
 

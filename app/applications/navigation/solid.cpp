@@ -22,7 +22,7 @@ struct Ring {
 Ring ringOf(const Building& building, const ViewGround& ground, double size) {
     glm::dvec2 middle(0.0);
     for (const glm::dvec2& corner : building.outline) middle += corner / static_cast<double>(building.outline.size());
-    const glm::dvec2 centre = ground.view().pointAt(middle);
+    const glm::dvec2 centre = ground.view().pointAt(building.whole.value_or(middle));
     double stands = ground.lift(building.base), foot = stands;
     std::vector<glm::dvec2> points;
     for (const glm::dvec2& corner : building.outline)
@@ -33,6 +33,7 @@ Ring ringOf(const Building& building, const ViewGround& ground, double size) {
         foot -= kSunk;
     }
     const auto lift = [&](double height) { return stands + size * (height - building.base) * ground.perMetre(); };
+    if (building.over > 0.0) foot = lift(building.base + building.over);
     Ring ring;
     for (const glm::dvec2& point : points) {
         ring.low.emplace_back(point.x, foot, point.y);

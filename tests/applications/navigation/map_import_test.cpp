@@ -16,7 +16,7 @@
 
 #include "app/applications/navigation/map_import.h"
 #include "core/base/error.h"
-#include "tests/core/temporary_folder.h"
+#include "tests/applications/navigation/map_files.h"
 
 // Maps of one's own. Files are written here byte by byte, so that what is read is held against known places and
 // heights.
@@ -26,151 +26,24 @@ namespace {
 
 namespace fs = std::filesystem;
 
-class MapImport : public ::testing::Test {
-protected:
-    fs::path write(const std::string& name, const std::string& bytes) const {
-        std::ofstream(folder_ / name, std::ios::binary) << bytes;
-        return folder_ / name;
-    }
-    TemporaryFolder folder_;
-};
-
-template <typename T> void put(std::string& bytes, T value) {
-    bytes.append(reinterpret_cast<const char*>(&value), sizeof value); // little endian, as all machines of ours
-}
+using MapImport = MapFiles;
 
 struct Georeference {
     double west = 0.0, north = 0.0, step = 10.0;
     int epsg = 32632; ///< 0: none is named
-    bool degrees = false;
 };
 
-/// An uncompressed GeoTIFF of floats, one strip (TIFF 6.0, OGC GeoTIFF 1.1).
+/// Of floats.
 template <typename Height> std::string geoTiff(int columns, int rows, const Georeference& geo, const Height& height) {
-    struct Entry {
-        std::uint16_t tag, type;
-        std::uint32_t count, value;
-    };
-    std::string doubles, keys;
-    for (const double v : {geo.step, geo.step, 0.0}) put(doubles, v);
-    for (const double v : {0.0, 0.0, 0.0, geo.west, geo.north, 0.0}) put(doubles, v);
-    const std::vector<std::uint16_t> directory{1,
-                                               1,
-                                               0,
-                                               3,
-                                               1024,
-                                               0,
-                                               1,
-                                               static_cast<std::uint16_t>(geo.degrees ? 2 : 1),
-                                               1025,
-                                               0,
-                                               1,
-                                               1,
-                                               static_cast<std::uint16_t>(geo.degrees ? 2048 : 3072),
-                                               0,
-                                               1,
-                                               static_cast<std::uint16_t>(geo.epsg)};
-    for (const std::uint16_t v : directory) put(keys, v);
-    const std::uint32_t entries = geo.epsg > 0 ? 13 : 12;
-    const std::uint32_t after = 8 + 2 + 12 * entries + 4;
-    const auto keysAt = after + static_cast<std::uint32_t>(doubles.size());
-    const auto dataAt = keysAt + static_cast<std::uint32_t>(keys.size());
-    const auto size = static_cast<std::uint32_t>(4 * columns * rows);
-    std::vector<Entry> list{{256, 4, 1, static_cast<std::uint32_t>(columns)},
-                            {257, 4, 1, static_cast<std::uint32_t>(rows)},
-                            {258, 3, 1, 32},
-                            {259, 3, 1, 1},
-                            {262, 3, 1, 1},
-                            {273, 4, 1, dataAt},
-                            {277, 3, 1, 1},
-                            {278, 4, 1, static_cast<std::uint32_t>(rows)},
-                            {279, 4, 1, size},
-                            {339, 3, 1, 3},
-                            {33550, 12, 3, after},
-                            {33922, 12, 6, after + 24}};
-    if (geo.epsg > 0) list.push_back({34735, 3, static_cast<std::uint32_t>(directory.size()), keysAt});
-    std::string bytes = "II*";
-    bytes.push_back('\0');
-    put(bytes, std::uint32_t{8});
-    put(bytes, static_cast<std::uint16_t>(list.size()));
-    for (const Entry& entry : list) {
-        put(bytes, entry.tag);
-        put(bytes, entry.type);
-        put(bytes, entry.count);
-        put(bytes, entry.value);
-    }
-    put(bytes, std::uint32_t{0});
-    bytes += doubles + keys;
-    for (int y = 0; y < rows; ++y)
-        for (int x = 0; x < columns; ++x) put(bytes, static_cast<float>(height(x, y)));
-    return bytes;
-}
-
-std::uint32_t crcOf(const std::string& bytes) {
-    std::uint32_t crc = 0xFFFFFFFFU;
-    for (const char c : bytes) {
-        crc ^= static_cast<std::uint8_t>(c);
-        for (int k = 0; k < 8; ++k) crc = (crc >> 1U) ^ ((crc & 1U) != 0 ? 0xEDB88320U : 0U);
-    }
-    return ~crc;
-}
-
-void putBig(std::string& bytes, std::uint32_t value) {
-    for (int shift = 24; shift >= 0; shift -= 8)
-        bytes.push_back(static_cast<char>(value >> static_cast<unsigned>(shift)));
-}
-
-/// A grey PNG of 16 bits, stored without compression; at most 64 KiB of pixels.
-template <typename Value> std::string png16(int columns, int rows, const Value& value) {
-    std::string raw;
-    for (int y = 0; y < rows; ++y) {
-        raw.push_back('\0');
-        for (int x = 0; x < columns; ++x) {
-            const int v = value(x, y);
-            raw.push_back(static_cast<char>(v >> 8));
-            raw.push_back(static_cast<char>(v & 255));
-        }
-    }
-    std::uint32_t a = 1, b = 0;
-    for (const char c : raw) {
-        a = (a + static_cast<std::uint8_t>(c)) % 65521;
-        b = (b + a) % 65521;
-    }
-    std::string stream("\x78\x01\x01", 3);
-    put(stream, static_cast<std::uint16_t>(raw.size()));
-    put(stream, static_cast<std::uint16_t>(~raw.size()));
-    stream += raw;
-    putBig(stream, b << 16U | a);
-    std::string bytes("\x89PNG\r\n\x1a\n", 8);
-    const auto chunk = [&](const std::string& name, const std::string& data) {
-        putBig(bytes, static_cast<std::uint32_t>(data.size()));
-        bytes += name + data;
-        putBig(bytes, crcOf(name + data));
-    };
-    std::string head;
-    putBig(head, static_cast<std::uint32_t>(columns));
-    putBig(head, static_cast<std::uint32_t>(rows));
-    head += std::string("\x10\0\0\0\0", 5);
-    chunk("IHDR", head);
-    chunk("IDAT", stream);
-    chunk("IEND", "");
-    return bytes;
-}
-
-bool tells(const MapReport& report, const std::string& words) {
-    return std::ranges::any_of(report.notes,
-                               [&](const Words& note) { return note.english.find(words) != std::string::npos; });
-}
-
-bool isInGermanToo(const MapReport& report) {
-    return std::ranges::none_of(report.notes,
-                                [](const Words& note) { return note.german.empty() || note.german == note.english; });
-}
-
-std::string all(const MapReport& report) {
-    std::string text;
-    for (const Words& note : report.notes) text += note.english + "\n";
-    return text;
+    Tiff tiff;
+    tiff.columns = columns;
+    tiff.rows = rows;
+    tiff.west = geo.west;
+    tiff.north = geo.north;
+    tiff.step = geo.step;
+    tiff.epsg = geo.epsg;
+    tiff.value = [&](int x, int y, int) { return height(x, y); };
+    return tiff.bytes();
 }
 
 /// A slope: 100 m at its western edge, 2 m more for each sample, and 1 m a row to the south.
@@ -191,7 +64,7 @@ TEST_F(MapImport, AGeoTiffInMetresIsWhereItSays) {
 
 // A degree of longitude at the equator is 111319.49 m (WGS 84, 6378137 m), and UTM shrinks the zone's middle by 0.9996.
 TEST_F(MapImport, DegreesBecomeMetres) {
-    write("ground.tif", geoTiff(101, 101, {8.95, 0.06, 0.001, 4326, true}, slope));
+    write("ground.tif", geoTiff(101, 101, {8.95, 0.06, 0.001, 4326}, slope));
     const ImportedMap imported = importMap(folder_.path());
     const glm::dvec2 size = imported.map.heights.size();
     EXPECT_EQ(imported.projection, "EPSG:32632");
@@ -218,15 +91,15 @@ TEST_F(MapImport, AnSrtmTileIsRead) {
 }
 
 TEST_F(MapImport, APictureWithoutAPlaceIsTakenAsMetres) {
-    const ImportedMap imported =
-        importMap(write("heights.png", png16(80, 60, [](int x, int y) { return 1000 + 10 * x + y; })));
+    const ImportedMap imported = importMap(
+        write("heights.png", Png{80, 60, 1, 16, [](int x, int y, int) { return 1000 + 10 * x + y; }}.bytes()));
     EXPECT_TRUE(tells(imported.report, "where it lies")) << all(imported.report);
     EXPECT_EQ(imported.map.heights.samples(), glm::ivec2(80, 60));
     EXPECT_NEAR(static_cast<double>(imported.map.heights.at({70, 50})), 1750.0, 0.5);
 }
 
 TEST_F(MapImport, AWrongProjectionIsSeenThrough) {
-    write("ground.tif", geoTiff(60, 60, {8.95, 0.05, 0.001, 32632, false}, slope)); // degrees that say they are metres
+    write("ground.tif", geoTiff(60, 60, {8.95, 0.05, 0.001, 32632}, slope)); // degrees that say they are metres
     const ImportedMap imported = importMap(folder_.path());
     EXPECT_TRUE(tells(imported.report, "look like degrees")) << all(imported.report);
     EXPECT_NEAR(imported.map.heights.size().x, 0.06 * 111319.49, 300.0);
@@ -243,7 +116,7 @@ constexpr const char* kHouses = R"({"type":"FeatureCollection","features":[
  {"type":"Feature","properties":{"height":5},"geometry":{"type":"Polygon","coordinates":[[[29.0,0.0],[29.0002,0.0],[29.0002,0.0001],[29.0,0.0]]]}}]})";
 
 TEST_F(MapImport, OutlinesStandWhereAndAsHighAsTheySay) {
-    write("ground.tif", geoTiff(101, 101, {8.95, 0.06, 0.001, 4326, true}, [](int, int) { return 50.0; }));
+    write("ground.tif", geoTiff(101, 101, {8.95, 0.06, 0.001, 4326}, [](int, int) { return 50.0; }));
     write("houses.geojson", kHouses);
     const ImportedMap imported = importMap(folder_.path());
     const MapReport& report = imported.report;
