@@ -105,6 +105,24 @@ TEST(Demo, OfAMatchedTargetPlaysWithoutAWindowToo) {
     EXPECT_TRUE(told["warnings"].empty()) << told["warnings"];
 }
 
+TEST(Demo, WhatWasReadOfAMapIsOneValueForPrograms) {
+    const TemporaryFolder folder;
+    std::ofstream(folder / "town.osm") << R"(<?xml version="1.0"?><osm version="0.6">
+ <node id="1" lat="0.0" lon="9.0"/><node id="2" lat="0.0" lon="9.0002"/><node id="3" lat="0.0002" lon="9.0002"/>
+ <way id="10"><nd ref="1"/><nd ref="2"/><nd ref="3"/><nd ref="1"/><tag k="building" v="yes"/><tag k="height" v="72 ft"/></way></osm>)";
+    std::ofstream(folder / "view.jpg") << "a photo";
+    const Outcome outcome =
+        lumorph({"demo", "navigation", "--map", folder.path().string(), "--seconds", "0.1", "--json"});
+    ASSERT_EQ(outcome.exitCode, 0) << outcome.err;
+    const auto told = outcome.json()["map"];
+    EXPECT_EQ(told["buildings"], 1);
+    EXPECT_NEAR(told["tallest"].get<double>(), 21.9456, 1e-9);
+    EXPECT_EQ(told["lowest"], 0.0);
+    EXPECT_EQ(told["highest"], 0.0);
+    EXPECT_EQ(told["passedOver"], nlohmann::json({"view.jpg"}));
+    EXPECT_FALSE(outcome.json()["warnings"].empty()) << "the photo, and the level ground";
+}
+
 /// How far apart two pictures are, a pixel.
 double picturesDiffer(const Image& one, const Image& other) {
     EXPECT_EQ(one.size(), other.size());

@@ -194,6 +194,7 @@ bool OutlineFile::gather() {
     for (;;) {
         CPLErrorReset(); // what one feature has costs no other
         OGRFeatureUniquePtr feature(data_.GetNextFeature(&layer, &share, nullptr, nullptr));
+        if (osm_ && std::string_view(CPLGetLastErrorMsg()).find(kUnordered) != std::string_view::npos) return false;
         if (!feature) break;
         if (++count % 1024 == 0) {
             progress_.throwIfCancelled();
@@ -209,7 +210,6 @@ bool OutlineFile::gather() {
         take(std::move(feature), layer);
     }
     if (CPLGetLastErrorType() >= CE_Failure) {
-        if (osm_ && std::string_view(CPLGetLastErrorMsg()).find(kUnordered) != std::string_view::npos) return false;
         const Words said = gdalWords();
         state_.note(file_,
                     {said.english + "; what comes after is left out.", said.german + "; was danach kommt, fehlt."});
