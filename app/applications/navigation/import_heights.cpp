@@ -183,7 +183,11 @@ protected:
                    CE_None;
         };
         GDALRasterBand* first = source_.GetRasterBand(1);
-        if (!read(first, samples_) || !read(first->GetMaskBand(), opaque_)) return CE_Failure;
+        if (!read(first, samples_)) return CE_Failure;
+        if ((first->GetMaskFlags() & GMF_ALL_VALID) != 0)
+            opaque_.assign(count, 255.0);
+        else if (!read(first->GetMaskBand(), opaque_))
+            return CE_Failure;
         if (code_.colors != HeightCode::Colors::none) {
             if (!read(source_.GetRasterBand(2), green_) || !read(source_.GetRasterBand(3), blue_)) return CE_Failure;
             for (std::size_t k = 0; k < count; ++k)
