@@ -77,7 +77,7 @@ std::string scaledBoard(const std::string& board, double scale) {
         double length = 0.0;
         const auto [stop, error] = std::from_chars(text.data(), text.data() + text.size(), length);
         const bool isLength = part >= 2 && error == std::errc() && stop == text.data() + text.size();
-        words += (part > 0 ? ":" : "") + (isLength ? shortest(scale * length) : text);
+        words += (part > 0 ? ":" : "") + (isLength ? shortest(std::round(1e6 * scale * length) / 1e6) : text);
         from = end + 1;
     }
     return words;
