@@ -19,6 +19,7 @@ namespace {
 constexpr double kWindow = 0.16;          ///< seconds over which a turn is measured: noise of single poses averages out
 constexpr double kShared = 1.0 / 3.0;     ///< of the shorter recording
 constexpr double kFastest = 2.5;          ///< times the usual speed
+constexpr double kMostlyRests = 0.5;      ///< of the usual speed of what moves: the median is of rests
 constexpr double kFastestHand = 15.0;     ///< radians a second that a body is turned at
 constexpr std::ptrdiff_t kElsewhere = 25; ///< steps from the best offset: another peak
 constexpr std::size_t kMostSteps = 60'000; ///< 20 minutes
@@ -62,7 +63,8 @@ std::vector<double> speedsOf(const PoseTrack& track, const Progress& progress) {
     // A tracker that jumps would count for more than all true turns.
     std::vector<double> known;
     std::ranges::copy_if(speeds, std::back_inserter(known), [](double speed) { return !std::isnan(speed); });
-    const double most = kFastest * usualSpeed(std::move(known));
+    const double middle = median(known), moving = usualSpeed(std::move(known));
+    const double most = kFastest * (middle < kMostlyRests * moving ? moving : middle);
     for (double& speed : speeds)
         if (speed > most) speed = most;
     return speeds;

@@ -27,7 +27,7 @@ constexpr double kLeastStray = 0.002;         ///< metres: hands tremble
 constexpr double kMedianOfNorm = 1.538;       ///< of a normal vector in space with sigma 1
 constexpr std::size_t kSlideParts = 8;        ///< of the recording, each with a dimple of its own
 constexpr double kLeastSlide = 0.003;         ///< metres
-constexpr double kSlideExplains = 0.75;       ///< of the straying, at most, is left by a dimple that slid
+constexpr double kSlideExplains = 0.9;        ///< of the straying, at most, is left by a dimple that slid
 
 /// How far the swings spread about their mean orientation, radians: about the axis of most, the second, the third.
 Eigen::Vector3d spreadOf(const PoseTrack& swings) {
