@@ -84,7 +84,7 @@ void replayTrack(const ReplayArguments& arguments, const Session& session) {
     if (ahead > PoseStream::kFarthestAhead) printWarnings({"nothing is predicted farther ahead than 150 ms"});
     if (arguments.json) {
         nlohmann::json json = jsonOf(replay);
-        json["warnings"] = jsonOf(track.warnings);
+        json["warnings"] = cli::jsonOf(track.warnings); // the one above hides it
         return printJson(json);
     }
     printError("predicted", replay.predicted, 0.0);
