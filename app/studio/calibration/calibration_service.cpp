@@ -306,7 +306,7 @@ void CalibrationService::read() {
         const CaptureOrder order = orderOf(setup);
         return orFinding<ReadCapture>([&]() -> OrFinding<ReadCapture> {
             try {
-                ReadCapture read = readPoses(
+                ReadCapture capture = readPoses(
                     views, setup.board, order,
                     [&](std::size_t index, const ReadPose& read) {
                         CalibrationPose pose = poseOf(views[index].name, read, setup.projector);
@@ -314,8 +314,8 @@ void CalibrationService::read() {
                         box->poses.emplace_back(index, std::move(pose));
                     },
                     progress);
-                read.warnings.insert(read.warnings.end(), listing.passedOver.begin(), listing.passedOver.end());
-                return read;
+                capture.warnings.insert(capture.warnings.end(), listing.passedOver.begin(), listing.passedOver.end());
+                return capture;
             } catch (const CaptureRefused& refused) {
                 if (!refused.finding().view.empty()) {
                     CalibrationPose pose = poseRefusedBy(refused.finding(), pictureOfFinding(views, refused.finding()));
