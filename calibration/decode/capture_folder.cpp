@@ -151,12 +151,12 @@ Finding passedOver(const std::string& view, const std::string& file, const std::
 
 CaptureListing listCapture(const std::filesystem::path& folder) {
     CaptureListing all;
+    std::vector<std::filesystem::path> beside;
     for (const std::filesystem::path& entry : entriesOf(folder)) {
         const std::string name = entry.filename().string();
         if (isHousekeeping(entry)) continue;
         if (!std::filesystem::is_directory(entry)) {
-            if (isImageName(entry))
-                all.passedOver.push_back(passedOver("", name, "lies beside the folders of the poses: passed over"));
+            if (isImageName(entry)) beside.push_back(entry);
             continue;
         }
         CapturedView view{name, {}};
@@ -179,6 +179,11 @@ CaptureListing listCapture(const std::filesystem::path& folder) {
         else if (!view.files.empty())
             all.views.push_back(std::move(view));
     }
+    if (all.views.empty() && !beside.empty())
+        throw DataError(folder.string(), "holds pictures, but no folders of them: " + someOf(beside),
+                        "give the folder in which each pose has a folder of its own");
+    if (!beside.empty())
+        all.passedOver.push_back(passedOver("", "", someOf(beside) + ": beside the folders of the poses, passed over"));
     if (all.views.empty())
         throw DataError(folder.string(),
                         all.passedOver.empty() ? "holds no folder with images"
@@ -201,14 +206,17 @@ std::optional<Finding> dropStrangers(CapturedView& view, std::size_t patterns) {
         }
         kinds[{lowerCase(file.extension().string()), {size.width, size.height}}].push_back(file);
     }
-    for (const auto& [kind, files] : kinds) {
-        if (files.size() != patterns) continue;
-        std::vector<std::filesystem::path> strangers = view.files;
-        std::erase_if(strangers, [&](const auto& file) { return std::ranges::count(files, file) > 0; });
-        view.files = files;
-        return passedOver(view.name, "", someOf(strangers) + ": of another size or kind than the images, passed over");
-    }
-    return std::nullopt;
+    const auto isLossy = [](const std::string& ending) {
+        return ending == ".jpg" || ending == ".jpeg" || ending == ".jpe" || ending == ".webp";
+    };
+    const std::vector<std::filesystem::path>* chosen = nullptr;
+    for (const auto& [kind, files] : kinds) // a camera may write each picture twice: without loss is better
+        if (files.size() == patterns && (chosen == nullptr || !isLossy(kind.first))) chosen = &files;
+    if (chosen == nullptr) return std::nullopt;
+    std::vector<std::filesystem::path> strangers = view.files;
+    std::erase_if(strangers, [&](const auto& file) { return std::ranges::count(*chosen, file) > 0; });
+    view.files = *chosen;
+    return passedOver(view.name, "", someOf(strangers) + ": of another size or kind than the images, passed over");
 }
 
 bool isLabCapture(const std::filesystem::path& folder) {

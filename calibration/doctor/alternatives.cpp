@@ -23,6 +23,7 @@ constexpr double kSigma = 0.1;      // pixels, of sound observations: what is ab
 constexpr double kRobustLoss = 3.0; // standard deviations
 constexpr double kTwoPi = 2.0 * std::numbers::pi;
 constexpr double kExplains = 0.35; // of the squares of errors that a cause must take away
+constexpr double kSureMove = 12.0; // standard deviations, the best of several trials
 constexpr double kAsGood = 1.3;    // times the squares that remain: a cause with fewer numbers is as likely
 constexpr double kRefused = 2.0;   // times what is bearable: above, a capture is refused
 constexpr double kNoise = 0.3;     // pixels: errors that need no explanation
@@ -460,6 +461,7 @@ private:
     static constexpr double kSquareSquares = 0.003;
     static constexpr double kSteadyFocus = 0.003;
     static constexpr double kMostFocus = 0.3;
+    static constexpr std::size_t kMostTrials = 10;
     static constexpr double kMostTurn = 30.0;    // degrees: more is no bump, the solution was lost
     static constexpr double kSteadyLight = 0.25; // projector pixels by which a moved camera shifts it
     /// With three poses each may have the focal length that its noise likes, at another distance.
@@ -542,8 +544,15 @@ private:
             if (bestMoved.empty() || state.squares < best.squares)
                 best = std::move(state), bestMoved = std::move(moved);
         };
-        for (std::size_t v = 0; v < count; ++v) attempt(v, v + 1);
-        for (std::size_t v = 2; v + 2 <= count; ++v) attempt(v, count);
+        // Of many poses the worst alone, and some of the places between them.
+        std::vector<std::size_t> worst(count);
+        std::iota(worst.begin(), worst.end(), std::size_t{0});
+        std::ranges::stable_sort(worst, std::greater<>(), [this](std::size_t v) {
+            return result_.views[v].heldOut.value_or(result_.views[v].projectorRms);
+        });
+        for (std::size_t i = 0; i < std::min(count, kMostTrials); ++i) attempt(worst[i], worst[i] + 1);
+        const std::size_t step = 1 + count / kMostTrials;
+        for (std::size_t v = 2; v + 2 <= count; v += step) attempt(v, count);
         const double shift = shiftOf(best, bestMoved);
         const auto first = static_cast<std::size_t>(std::ranges::find(bestMoved, true) - bestMoved.begin());
         const bool isLater = std::ranges::count(bestMoved, true) > 1;
@@ -674,8 +683,8 @@ std::optional<Explanation> explanationOf(const std::vector<ViewObservations>& vi
     CauseTrials trials(views, result, order, progress);
     const std::vector<Alternative> all = trials.all();
     const auto told = [](const Alternative& by) {
-        // What moved between poses is no quality of a device, but two set-ups in one.
-        const double refused = by.cause == Cause::cameraMoved ? 1.0 : kRefused;
+        // What certainly moved between poses is no quality of a device, but two set-ups in one.
+        const double refused = by.cause == Cause::cameraMoved && by.sigmas >= kSureMove ? 1.0 : kRefused;
         return Explanation{{by.cause, by.view, "", by.words, by.remedy}, by.amount >= refused};
     };
     const auto counts = [](const Alternative& by) { return by.amount >= 1.0 && by.explained >= kExplains; };

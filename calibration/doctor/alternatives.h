@@ -22,7 +22,7 @@ struct Alternative {
 };
 
 /// Solves the capture again under each cause that residuals alone do not tell apart: the projector's picture warped or
-/// stretched, the board bent or its squares not square, the camera refocused between poses, phases bent by the
+/// stretched, the board bent or its squares not square, the camera refocused or moved between poses, phases bent by the
 /// projector's gamma. The cause that explains most first. Throws Cancelled.
 [[nodiscard]] std::vector<Alternative> alternativesOf(const std::vector<ViewObservations>& views,
                                                       const ProcamCalibration& result, const CaptureOrder& order,

@@ -141,12 +141,23 @@ public:
         if (finding) all_.push_back(std::move(*finding));
     }
     void throwIf(const std::optional<Finding>& finding) const {
-        if (finding) throw CaptureRefused(all_.empty() ? *finding : all_.front());
+        if (finding) throw CaptureRefused(explains(finding->cause) ? all_.front() : *finding);
     }
     [[nodiscard]] bool has(Cause cause) const { return std::ranges::find(all_, cause, &Finding::cause) != all_.end(); }
     std::vector<Finding> take() { return std::move(all_); }
 
 private:
+    /// Whether what came first explains a cause that tells little by itself.
+    [[nodiscard]] bool explains(Cause cause) const {
+        if (all_.empty()) return false;
+        const bool hidesAll = has(Cause::noisy) || has(Cause::underexposed) || has(Cause::outOfFocus);
+        const bool isVague =
+            cause == Cause::boardNotFound || cause == Cause::boardUnlit || cause == Cause::projectorSize;
+        const bool isSeenInDetail =
+            cause == Cause::rigMoved || cause == Cause::foreignImage || cause == Cause::phaseOrder;
+        return isVague || (isSeenInDetail && hidesAll);
+    }
+
     std::vector<Finding> all_;
 };
 
@@ -164,8 +175,8 @@ ReadPose readPose(const CapturedView& view, const std::vector<cv::Mat>& images, 
     if (sequence && !isBearable) throw CaptureRefused(*sequence);
     troubles.add(sequence);
     troubles.throwIf(checkStripes(view, images, order));
-    if (const auto phases = checkPhases(view, images, order); phases && phases->cause == Cause::phaseOrder) {
-        // Steps of another brightness look like steps in another order.
+    if (const auto phases = checkPhases(view, images, order)) {
+        // Steps of another brightness look like steps in another order, or like a curve.
         const SteadiedImages steady = steadied(images, order);
         if (!checkPhases(view, steady.images, order)) throw CaptureRefused(driftFinding(view.name, "", steady.change));
         troubles.throwIf(phases);
@@ -202,6 +213,12 @@ ReadPose readPose(const CapturedView& view, const std::vector<cv::Mat>& images, 
     return read;
 }
 
+void addWarnings(const std::vector<Finding>& ofPose, std::vector<Finding>& all) {
+    for (const Finding& warning : ofPose)
+        if (warning.cause != Cause::boardKind || std::ranges::count(all, Cause::boardKind, &Finding::cause) == 0)
+            all.push_back(warning);
+}
+
 ReadCapture readPoses(const std::vector<CapturedView>& poses, const CalibrationBoard& board, const CaptureOrder& order,
                       const PoseReader& onRead, const Progress& progress, Sight sight) {
     if (poses.empty()) throw InvalidInput("poses", "there is none", "give at least one");
@@ -216,11 +233,7 @@ ReadCapture readPoses(const std::vector<CapturedView>& poses, const CalibrationB
     capture.camera = read.front().size;
     for (FolderPose& view : read) {
         capture.views.push_back(std::move(view.observations));
-        for (const Finding& warning : view.warnings) { // the same board in all poses is named once
-            const bool isRepeated = warning.cause == Cause::boardKind &&
-                                    std::ranges::count(capture.warnings, Cause::boardKind, &Finding::cause) > 0;
-            if (!isRepeated) capture.warnings.push_back(warning);
-        }
+        addWarnings(view.warnings, capture.warnings);
     }
     return capture;
 }
@@ -242,9 +255,9 @@ bool isUsualSize(cv::Size size) {
     });
 }
 
-std::string oneDigit(double value) {
+std::string shortNumber(double value) {
     char text[48];
-    std::snprintf(text, sizeof(text), "%.1f", value);
+    std::snprintf(text, sizeof(text), "%.3g", value);
     return text;
 }
 
@@ -272,13 +285,13 @@ void warnOfUnlikely(const ReadCapture& capture, cv::Size projector, ProcamCalibr
     constexpr double kSmallest = 1.0, kLargest = 1000.0, kNearest = 1.0; // mm, as boards are named
     if (square < kSmallest || square > kLargest)
         result.warnings.push_back({Cause::unlikelyLength, "", "",
-                                   "points of the board are " + oneDigit(square) + " mm apart",
+                                   "points of the board are " + shortNumber(square) + " mm apart",
                                    "give the board's lengths in millimetres: all others follow them"});
     const PoseVector& rig = result.projectorFromCamera;
     const double apart = std::hypot(rig[3], rig[4], rig[5]);
     if (apart < kNearest)
         result.warnings.push_back({Cause::unlikelyLength, "", "",
-                                   "the projector would stand " + oneDigit(apart) + " mm from the camera",
+                                   "the projector would stand " + shortNumber(apart) + " mm from the camera",
                                    "check the board's lengths, in millimetres"});
 }
 

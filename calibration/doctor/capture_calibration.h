@@ -26,6 +26,9 @@ struct ReadPose {
 [[nodiscard]] ReadPose readPose(const CapturedView& view, const std::vector<cv::Mat>& images,
                                 const CalibrationBoard& board, const CaptureOrder& order);
 
+/// Adds what is told of a pose; the same board in all poses is named once.
+void addWarnings(const std::vector<Finding>& ofPose, std::vector<Finding>& all);
+
 /// What the poses of a capture tell together.
 struct ReadCapture {
     std::vector<ViewObservations> views;

@@ -114,7 +114,6 @@ std::optional<double> turnsByOne(const Turns& coarse, const Turns& fine) {
         for (int y = 0; y + kApart < fine.turns.rows; y += 2)
             for (int x = 0; x + kApart < fine.turns.cols; x += 2) take(y, x, down ? kApart : 0, down ? 0 : kApart);
     if (count < kFewestPlaces || !(square > 0.0)) return std::nullopt;
-    // Noise of the coarse set makes the regression on it too small; that of the mean by large parts does not.
     return mixed / square;
 }
 

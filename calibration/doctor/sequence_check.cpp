@@ -251,9 +251,16 @@ std::optional<Finding> checkFlatFields(const SampledStack& stack, const Captured
         return Finding{Cause::doubledImage, view.name, nameIn(view, std::max(white, black)),
                        "is the same image as white", kCaptureAgain};
     constexpr double kWhiteAndBlack = 0.85; // of the light
+    // A camera that sees half of the projector's picture has pattern and inverse of the coarsest bit all bright or
+    // dark.
+    const auto areOnePair = [&order](int one, int other) {
+        const auto* a = std::get_if<GrayBit>(&order.images[static_cast<std::size_t>(one)]);
+        const auto* b = std::get_if<GrayBit>(&order.images[static_cast<std::size_t>(other)]);
+        return a != nullptr && b != nullptr && a->axis == b->axis && a->bit == b->bit;
+    };
     for (int one = 0; one < static_cast<int>(order.images.size()); ++one)
         for (const int other : {one - 1, one + 1})
-            if (other >= 0 && other < static_cast<int>(order.images.size()) &&
+            if (other >= 0 && other < static_cast<int>(order.images.size()) && !areOnePair(one, other) &&
                 stack.brighterBy(one, other) > kWhiteAndBlack)
                 return Finding{Cause::wrongOrder, view.name, nameIn(view, one),
                                "white and black are seen here, where '" +

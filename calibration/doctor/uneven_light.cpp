@@ -216,6 +216,8 @@ std::optional<Finding> bentEdges(const CapturedView& view, const Samples& sample
     const Eigen::VectorXf uneven = unevenness(samples.means(samples.grey), samples.range);
     Eigen::MatrixXf means = samples.means(samples.grey);
     double dark = 0.0;
+    double edges = 0.0;
+    std::array<bool, 2> isFinestBent{}; // of columns, of rows
     for (std::size_t s = 0; s < samples.sets.size(); ++s) {
         const auto at = static_cast<Eigen::Index>(s);
         const auto* bit = std::get_if<GrayBit>(&order.images[static_cast<std::size_t>(samples.sets[s].front())]);
@@ -224,23 +226,27 @@ std::optional<Finding> bentEdges(const CapturedView& view, const Samples& sample
         for (Eigen::Index p = 0; p < samples.grey.rows(); ++p) {
             const float one = samples.grey(p, samples.sets[s].front());
             const float other = samples.grey(p, samples.sets[s].back());
-            dark += std::min(one, other) < kDark;
-            if (std::abs(one - other) > kClearly * samples.range[p])
+            if (std::abs(one - other) > kClearly * samples.range[p]) {
                 ++clear;
-            else
-                means(p, at) = std::numeric_limits<float>::quiet_NaN();
+                continue;
+            }
+            means(p, at) = std::numeric_limits<float>::quiet_NaN();
+            dark += std::min(one, other) < kDark; // at an edge neither is black
+            edges += 1.0;
         }
         const bool isJudged = bit->bit > kFinest || uneven[at] < static_cast<float>(kEvenLight);
+        isFinestBent[bit->axis == PatternAxis::rows ? 1 : 0] |= !isJudged;
         if (!isJudged)
             means.col(at).setConstant(std::numeric_limits<float>::quiet_NaN());
         else if (static_cast<float>(clear) < kMostlyClear * static_cast<float>(samples.grey.rows()) &&
                  bit->bit > kFinest)
             return std::nullopt;
     }
+    if (!isFinestBent[0] || !isFinestBent[1]) return std::nullopt; // a single image, not a curve
     if (mostUneven(unevenness(means, samples.range)) >= static_cast<float>(kEvenLight)) return std::nullopt;
     constexpr double kMuch = 0.2;
-    if (const double share = dark / static_cast<double>(means.size()); share > kMuch)
-        return Finding{Cause::clipped, view.name, "", percent(share) + " of what is seen is cut off at black",
+    if (const double share = dark / std::max(1.0, edges); share > kMuch)
+        return Finding{Cause::clipped, view.name, "", percent(share) + " of the edges of stripes are cut off at black",
                        "expose for longer, or lower the camera's black level"};
     return Finding{Cause::projectorGamma, view.name, "",
                    "the greys follow a curve: at the edges of stripes patterns and their inverses do not add up",
@@ -423,7 +429,7 @@ std::optional<Finding> causeInImages(const CapturedView& view, const std::vector
     const auto sets = evenSets(order);
     const std::vector<cv::Mat1f> even = evenLightOf(images, sets);
     if (even.size() < 4) return std::nullopt;
-    cv::Mat1f usual(images.front().size()), light(images.front().size());
+    cv::Mat1f usual(images.front().size());
     std::vector<float> values(even.size());
     for (int y = 0; y < usual.rows; ++y)
         for (int x = 0; x < usual.cols; ++x) {

@@ -259,9 +259,11 @@ std::optional<Finding> checkBoardSize(const std::string& view, const cv::Mat1b& 
     if (!seen || *seen == said || *seen == cv::Size(said.height, said.width)) return std::nullopt;
     if (found && seen->area() <= said.area()) return std::nullopt;
     const std::string words = std::to_string(seen->width) + " x " + std::to_string(seen->height);
+    const std::string saidWords =
+        " inner corners, not " + std::to_string(said.width) + " x " + std::to_string(said.height);
     return Finding{Cause::boardSize, view, "",
-                   "the board has " + words + " inner corners, not " + std::to_string(said.width) + " x " +
-                       std::to_string(said.height),
+                   found ? "the board has " + words + saidWords
+                         : "only " + words + saidWords + ", are seen: it has fewer, or a part of it is dark or covered",
                    "give the number of inner corners that the board has: one fewer than squares, both ways"};
 }
 
@@ -446,14 +448,20 @@ bool isTurnedOver(const ViewObservations& view) {
     return growth(0, 0) < 0.0 && growth(1, 1) < 0.0 && isUpright(growth);
 }
 
+bool isRightSideUp(const ViewObservations& view) {
+    const cv::Matx22d growth = growthOf(view.projector);
+    return growth(0, 0) > 0.0 && growth(1, 1) > 0.0 && isUpright(growth);
+}
+
 } // namespace
 
 std::optional<Finding> checkTurned(const std::vector<ViewObservations>& views) {
     const auto count = std::ranges::count_if(views, isTurnedOver);
     const bool mostAre = 2 * count > std::ssize(views);
-    if (count == 0 || count == std::ssize(views)) return std::nullopt;
-    const auto odd =
-        std::ranges::find_if(views, [mostAre](const ViewObservations& view) { return isTurnedOver(view) != mostAre; });
+    const auto isOdd = mostAre ? isRightSideUp : isTurnedOver;
+    const auto odd = std::ranges::find_if(views, isOdd);
+    // Of a rig that is rolled some poses are neither.
+    if (odd == views.end() || std::ranges::none_of(views, mostAre ? isTurnedOver : isRightSideUp)) return std::nullopt;
     return Finding{Cause::phaseOrder, odd->name, "",
                    "the projector's picture is upside down in this pose and not in others: steps of its phases are "
                    "exchanged",

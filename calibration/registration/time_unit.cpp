@@ -90,9 +90,11 @@ TimeUnit likelyTimeUnit(const PoseTrack& track) {
     if (track.poses.size() < kLeastPoses || countsFrames(track)) return {};
     constexpr std::array kUnits{TimeUnit{}, TimeUnit{1e-3, "milliseconds"}, TimeUnit{1e-6, "microseconds"},
                                 TimeUnit{1e-9, "nanoseconds"}};
+    constexpr double kShortestStep = 1e-3; // no tracker has more poses a second
     const double step = stepOf(track);
     for (const TimeUnit& unit : kUnits)
-        if (step * unit.seconds <= kLongestStep) return unit;
+        if (step * unit.seconds <= kLongestStep)
+            return unit.seconds == 1.0 || step * unit.seconds >= kShortestStep ? unit : TimeUnit{};
     return {};
 }
 

@@ -185,7 +185,7 @@ public:
                 note(*role, child, depth);
                 continue;
             }
-            if (child.children.empty() || depth >= kDeepestNode) continue;
+            if (child.children.empty() || depth >= kDeepestNode || isBoardNode(child)) continue;
             if (const auto inner = sideOf(child, side, fromZero))
                 collect(child, *inner, depth + 1);
             else
@@ -205,6 +205,13 @@ private:
         const ForeignEntry* entry = nullptr;
         int depth = 0;
     };
+
+    /// A board's width and height are no camera's.
+    [[nodiscard]] static bool isBoardNode(const ForeignEntry& node) {
+        constexpr std::array<std::string_view, 8> kNames = {"board",        "chessboard", "checkerboard", "charuco",
+                                                            "charucoboard", "pattern",    "target",       "grid"};
+        return std::ranges::find(kNames, looseOf(node.key)) != kNames.end();
+    }
 
     /// Of a node by its name, within one of `around`; nothing for the node of a further camera.
     [[nodiscard]] static std::optional<Side> sideOf(const ForeignEntry& node, Side around, bool fromZero) {
@@ -256,6 +263,10 @@ private:
     void note(Role role, const ForeignEntry& entry, int depth) {
         const auto [known, isNew] = entries_.try_emplace(role, Noted{&entry, depth});
         if (isNew || known->second.depth < depth) return;
+        const bool isRemark = role == Role::rms || role == Role::cameraRms || role == Role::projectorRms ||
+                              role == Role::date || role == Role::board; // written in several ways side by side
+        const bool isSame = entry.children.empty() && entry.value == known->second.entry->value;
+        if (known->second.depth == depth && (isRemark || isSame)) return;
         if (known->second.depth == depth)
             text_.refuse(entry.line, "says again what line " + std::to_string(known->second.entry->line) + " said");
         known->second = {&entry, depth};

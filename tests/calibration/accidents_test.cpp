@@ -159,7 +159,7 @@ Row rowOf(const std::string& source, const Accident& accident, const SpoiledCapt
         std::ranges::any_of(row.causes, [&](Cause cause) { return std::ranges::count(accident.expected, cause) > 0; });
     const bool isGood = !row.refused && row.beside <= kMostBeside;
     row.isRight = isNamed || (isGood && accident.mayPass);
-    row.isHarmed = !row.refused && row.beside > kMostBeside && !(accident.isAsked && isNamed);
+    row.isHarmed = !row.refused && !(row.beside <= kMostBeside) && !(accident.isAsked && isNamed);
     return row;
 }
 

@@ -574,7 +574,7 @@ void CalibrationService::solve() {
     capture.camera = camera_;
     capture.warnings = passedOver_;
     for (const CalibrationPose& pose : state_.poses)
-        if (pose.counts()) capture.warnings.insert(capture.warnings.end(), pose.warnings.begin(), pose.warnings.end());
+        if (pose.counts()) addWarnings(pose.warnings, capture.warnings);
     if (capture.views.size() < static_cast<std::size_t>(kFewestPoses)) {
         state_.refusal = Finding{Cause::tooFewViews, "", "",
                                  std::to_string(capture.views.size()) + " poses count, but three are needed",
@@ -798,7 +798,7 @@ void CalibrationService::takeImport(const std::filesystem::path& file, Calibrati
     result.heldOutMillimetres = heldOutMillimetresOf(result.solved);
     // Other programs write dates in their own way, or none.
     const QDateTime when = QDateTime::fromString(QString::fromStdString(record.source.date), Qt::ISODate);
-    if (when.isValid()) result.date = record.source.date;
+    if (when.isValid()) result.date = when.toUTC().toString(Qt::ISODate).toStdString();
     const std::vector<std::string> views = tableViewsOf(result.solved);
     state_.flatPose = views.empty() ? std::string() : views.front();
     state_.isImported = true;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include <QDateTime>
 #include <QLocale>
@@ -533,8 +534,24 @@ FindingWords wordsOf(const Finding& finding) {
     return words;
 }
 
+namespace {
+
+/// What is said and needs nothing done.
+bool isRemark(const Finding& finding) {
+    return finding.cause == Cause::passedOver || finding.cause == Cause::boardKind;
+}
+
+} // namespace
+
+std::vector<Finding> remarksOf(const CalibrationResult& result) {
+    std::vector<Finding> remarks;
+    std::ranges::copy_if(result.solved.warnings, std::back_inserter(remarks), isRemark);
+    return remarks;
+}
+
 std::vector<Finding> doubtsOf(const CalibrationResult& result) {
     std::vector<Finding> doubts = result.solved.warnings;
+    std::erase_if(doubts, isRemark);
     double worst = 0.0;
     std::string worstName;
     for (const ViewQuality& view : result.solved.views)

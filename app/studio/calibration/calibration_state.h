@@ -130,6 +130,8 @@ struct FindingWords {
 
 /// Reasons why a result is to be doubted, the gravest first; none: it is good.
 [[nodiscard]] std::vector<Finding> doubtsOf(const CalibrationResult& result);
+/// What was passed over, and what was found to be another board than said: no doubt of the result.
+[[nodiscard]] std::vector<Finding> remarksOf(const CalibrationResult& result);
 
 /// What is kept of it beside the installation: date, figures, inputs.
 [[nodiscard]] InstallationVersion versionOf(const CalibrationState& state, const Installation& installation);
