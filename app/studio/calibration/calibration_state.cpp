@@ -528,6 +528,7 @@ FindingWords wordsOf(const Finding& finding) {
     remedy.replace("nothing has to be done; --board", tr("nothing has to be done; the board"))
         .replace("Nothing has to be done; --board", tr("Nothing has to be done; the board"))
         .replace("--board", tr("the board at the left"))
+        .replace("--pattern", tr("the patterns"))
         .replace("--projector", tr("the projector's size at the left"));
     remedy.replace(", or say so in an order file", "");
     words.remedy = remedy;

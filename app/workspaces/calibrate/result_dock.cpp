@@ -167,12 +167,14 @@ private:
         if (state.refusal) findings.emplace_back(*state.refusal, true);
         for (const CalibrationPose& pose : state.poses)
             if (pose.refusal && !pose.leftOut) findings.emplace_back(*pose.refusal, true);
-        if (state.result)
+        if (state.result) {
             for (const Finding& doubt : doubtsOf(*state.result)) findings.emplace_back(doubt, false);
-        for (const Finding& remark : remarksOf(*state.result)) findings.emplace_back(remark, false);
-        else for (const CalibrationPose& pose : state.poses) if (!pose.leftOut) for (const Finding& warning :
-                                                                                     pose.warnings)
-            findings.emplace_back(warning, false);
+            for (const Finding& remark : remarksOf(*state.result)) findings.emplace_back(remark, false);
+        } else {
+            for (const CalibrationPose& pose : state.poses)
+                if (!pose.leftOut)
+                    for (const Finding& warning : pose.warnings) findings.emplace_back(warning, false);
+        }
         const bool any = state.result || !findings.empty();
         empty_->setVisible(!any && state.setup.way != CaptureWay::crosshairs); // whose figures are in the middle
         result_->setVisible(any);
