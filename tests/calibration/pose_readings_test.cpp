@@ -83,9 +83,9 @@ using Motion = std::function<Pose(double)>;
 /// Moves for half of the time (or a fifth of it), rests for the other.
 Motion stopAndGo(const Motion& motion, double moving) {
     return [motion, moving](double t) {
-        constexpr double kCycle = 4.0, kTurn = 6.283185307179586;
+        constexpr double kCycle = 4.0, kWholeTurn = 6.283185307179586;
         const double cycle = std::floor(t / kCycle), share = std::min(1.0, (t - kCycle * cycle) / (moving * kCycle));
-        return motion(2.0 * (cycle + share - std::sin(kTurn * share) / kTurn));
+        return motion(2.0 * (cycle + share - std::sin(kWholeTurn * share) / kWholeTurn));
     };
 }
 
@@ -249,7 +249,7 @@ TEST(PoseReadings, EachKindOfFaultIsReadOrRefusedByItsCause) {
     if (const char* seeds = std::getenv("LUMORPH_POSE_SEEDS")) std::sscanf(seeds, "%u:%u", &from, &to);
     const std::vector<Kind> kinds = allKinds();
     for (unsigned seed = from; seed < to; ++seed)
-        for (std::size_t i = 0; i < kinds.size(); i += longTests() ? 1 : 3) check(kinds[i], seed);
+        for (std::size_t i = 0; i < kinds.size(); i += test::longTests() ? 1 : 3) check(kinds[i], seed);
 }
 
 TEST(PoseReadings, TheTimeOffsetIsThatOfTheClocksInSeconds) {
