@@ -299,7 +299,7 @@ void playDemo(const Demo& demo, const DemoPlay& play, std::ostream& out, const P
                              {"record", play.video.string()},
                              {"warnings", rates.warnings}};
         for (const auto& [name, json] : script.figures) value[name] = nlohmann::json::parse(json);
-        out << value.dump(2) << std::endl;
+        out << value.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) << std::endl;
         return;
     }
     out << std::fixed << std::setprecision(1) << rates.frames << " frames of " << demo.name << ": loop "

@@ -6,6 +6,7 @@
 #include <string_view>
 #include <system_error>
 
+#include "core/base/confined_path.h"
 #include "core/base/plain_text.h"
 #include "core/geometry/gltf_source.h"
 #include "core/geometry/mesh_file.h"
@@ -16,7 +17,10 @@ namespace {
 /// The name under which a copy of the model finds the file: as it is written, with the slashes of this system.
 std::filesystem::path nameBeside(const std::string& uri, const std::filesystem::path& at) {
     std::string name = gltf::percentDecoded(uri);
-    if (at.filename().native().find('\\') == std::string::npos) std::ranges::replace(name, '\\', '/');
+    std::string slashed = name;
+    std::ranges::replace(slashed, '\\', '/');
+    // A link may have a name with backslashes that would lead out of the folder as slashes.
+    if (at.filename().native().find('\\') == std::string::npos && staysInside(slashed)) name = slashed;
     return std::filesystem::path(name).lexically_normal();
 }
 

@@ -112,11 +112,12 @@ ReadModel readDocument(const Container& container, const Folder& folder, std::si
     for (const std::vector<std::byte>& owned : buffers.owned) sourceBytes += owned.size();
     MemoryBudget budget(file, sourceBytes);
     const Accessors accessors(structure, buffers, budget, file);
-    ReadModel read{{}, extensionWarnings(document)};
+    ReadModel read{{}, extensionWarnings(document), {}};
     const Source source{document, structure, accessors, read.warnings};
 
     Model& model = read.model;
-    model.images = readImages(document, structure, buffers, folder, budget, file, read.warnings);
+    model.images = readImages(document, structure, buffers, folder, budget, file, read.unread);
+    read.warnings.insert(read.warnings.end(), read.unread.begin(), read.unread.end());
     for (std::size_t i = 0; i < structure.materials.size(); ++i)
         model.materials.push_back(readMaterial(source, i, model.images.size()));
     model.meshes = readMeshes(source);

@@ -17,6 +17,7 @@ namespace lumorph {
 struct ReadModel {
     Model model;
     std::vector<std::string> warnings;
+    std::vector<std::string> unread; ///< of those, the pictures that are missing or broken
 };
 
 /// As `readModel` and `readGlb`, which leave the warnings out. Throw DataError as these.

@@ -12,6 +12,8 @@
 #include <unistd.h>
 
 #include "core/base/atomic_file.h"
+#include "core/base/confined_path.h"
+#include "core/base/text.h"
 #include "core/geometry/gltf_files.h"
 #include "core/geometry/mesh_file.h"
 
@@ -44,7 +46,10 @@ void addMesh(const fs::path& file, std::vector<AssetFiles::File>& files) {
     files.push_back(measured(file.filename(), file));
     if (!isGltfFile(file)) return;
     for (const ReferredFile& referred : filesReferredBy(file))
-        if (!referred.missing) files.push_back(measured(referred.name, referred.file));
+        if (!staysInside(referred.name.generic_string()))
+            throw DataError(file.string(), "refers to " + inQuotes(referred.name.string()) + ", outside of its folder",
+                            "put what it needs beside it");
+    if (!referred.missing) files.push_back(measured(referred.name, referred.file));
 }
 
 AssetFiles filesOfFolder(const fs::path& folder) {

@@ -61,7 +61,7 @@ public:
         : name_(name), budget_(budget), progress_(progress), scene_(std::make_shared<SceneModel>()) {
         ReadModel read = readModelFile(file);
         scene_->model = std::move(read.model);
-        warnings_ = std::move(read.warnings);
+        unread_ = std::move(read.unread);
         (void)flatten(scene_->model); // throws where a transform leads beyond all numbers
     }
 
@@ -70,7 +70,7 @@ public:
             scene_->materials.push_back(converted(material));
         // Decoded, they are not needed a second time.
         for (Model::Image& image : scene_->model.images) image.bytes = {};
-        for (const std::string& warning : warnings_)
+        for (const std::string& warning : unread_)
             loaded_.problem += (loaded_.problem.empty() ? name_ + ": " : " ") + warning;
         loaded_.model = std::move(scene_);
         return std::move(loaded_);
@@ -134,7 +134,7 @@ private:
     PictureBudget& budget_;
     const Progress& progress_;
     std::shared_ptr<SceneModel> scene_;
-    std::vector<std::string> warnings_; ///< of its file
+    std::vector<std::string> unread_; ///< its pictures that are missing or broken
     LoadedModel loaded_;
 };
 

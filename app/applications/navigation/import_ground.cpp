@@ -200,10 +200,17 @@ void takeHeights(ImportState& state, GDALDataset& ground) {
     sources.spacing = geo[1];
     sources.origin = {geo[0] + 0.5 * geo[1], geo[3] + 0.5 * geo[5]};
     sources.heights = bandOf(ground, 1);
+    constexpr float kAllMissing = 0.999F;
     double missing = 0.0;
     std::size_t on = 0;
-    for (const float share : bandOf(ground, 2)) {
+    const std::vector<float> shares = bandOf(ground, 2);
+    for (std::size_t k = 0; k < shares.size(); ++k) {
+        const float share = shares[k];
         if (!std::isfinite(share)) continue;
+        if (share >= kAllMissing && std::isfinite(sources.heights[k])) { // another file has heights there
+            ++on;
+            continue;
+        }
         ++on;
         missing += static_cast<double>(share);
     }

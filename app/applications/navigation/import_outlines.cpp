@@ -104,6 +104,10 @@ private:
             const Geometry common(building.geometry->Intersection(part->geometry.get()));
             if (!common || areaOf(*common) < kLeast * areaOf(*part->geometry)) continue;
             if (!part->shape.height) part->shape.height = building.shape.height;
+            if (BuildingShape& shape = part->shape; shape.height) {
+                if (shape.from >= *shape.height) shape.from = 0.0;
+                shape.roof = std::min(shape.roof, *shape.height - shape.from);
+            }
             const OGRGeometry& before = left ? *left : *building.geometry;
             if (Geometry rest(before.Difference(part->geometry.get())); rest) left = std::move(rest);
         }
@@ -279,8 +283,12 @@ void OutlineFile::place(Feature& feature, const WayToMap& way) {
         feature.geometry = std::move(polygon);
     }
     const std::size_t closed = area ? closeRings(*feature.geometry) : 0;
-    bool sound = !area || polygonsOf(*feature.geometry).empty() ||
-                 polygonsOf(*feature.geometry).front()->getExteriorRing()->getNumPoints() >= 4;
+    const auto hasRing = [](const OGRPolygon* polygon) {
+        const OGRLinearRing* ring = polygon->getExteriorRing();
+        return ring != nullptr && ring->getNumPoints() >= 4;
+    };
+    const auto polygons = polygonsOf(*feature.geometry);
+    bool sound = !area || polygons.empty() || std::ranges::any_of(polygons, hasRing);
     if (way.transformation) {
         if (way.from.IsGeographic()) {
             OGREnvelope box;
@@ -331,6 +339,10 @@ void OutlineFile::placeLine(const OGRFeature& feature, const OGRGeometry& geomet
     const std::string highway = tagOf(feature, "highway");
     MapSources::Line line;
     const OGRLineString& points = *geometry.toLineString();
+    if (points.getNumPoints() < 2) {
+        ++state_.report.leftOut;
+        return;
+    }
     for (int k = 0; k < points.getNumPoints(); ++k) line.points.emplace_back(points.getX(k), points.getY(k));
     line.width = highway.empty() ? line.width : widthOf(highway);
     state_.sources.lines.push_back(std::move(line));

@@ -103,7 +103,8 @@ void ImportState::chooseSystem(const glm::dvec2& lonLat) {
 std::optional<WayToMap> wayToMap(ImportState& state, const std::filesystem::path& file, const OGRSpatialReference* said,
                                  const std::vector<glm::dvec2>& points, Unsaid unsaid) {
     const glm::dvec2 middle = medianPoint(points);
-    const bool degrees = canBeDegrees(middle) && (said != nullptr || unsaid == Unsaid::degrees);
+    const bool isLocal = said != nullptr && said->IsLocal();
+    const bool degrees = !isLocal && canBeDegrees(middle) && (said != nullptr || unsaid == Unsaid::degrees);
     const bool none = said == nullptr || said->IsEmpty() || said->IsLocal();
     if (none ? !degrees : said->IsGeographic() && !degrees) return wayOfMetres(state, file, middle);
     WayToMap way{none ? systemOf(4326) : levelSystem(*said), nullptr};

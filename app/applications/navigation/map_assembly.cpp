@@ -72,7 +72,7 @@ void leaveOutTheFar(MapSources& sources, MapReport& report) {
         x.push_back(p.x);
         y.push_back(p.y);
     });
-    if (x.empty()) return;
+    if (x.size() < 3) return; // of two nobody knows which is far
     const glm::dvec2 middle(medianOf(x), medianOf(y));
     each([&](const glm::dvec2& p) { distances.push_back(glm::distance(p, middle)); });
     const double far = kFarther * medianOf(distances, kMost) + kNear;
@@ -152,7 +152,7 @@ void addRoof(Building& building, const BuildingShape& shape) {
     const bool ridged = outline.size() == 4 || shape.form == Building::Roof::pyramid;
     if (building.whole || shape.form == Building::Roof::flat || !(shape.roof > 0.0) || !ridged) return;
     building.roof = shape.form;
-    building.eaves = building.ridge - shape.roof;
+    building.eaves = building.ridge - std::min(shape.roof, building.ridge - building.base - building.over);
     if (outline.size() == 4 && glm::distance(outline[1], outline[2]) > glm::distance(outline[0], outline[1]))
         std::ranges::rotate(outline, outline.begin() + 1);
 }
@@ -259,7 +259,9 @@ private:
         for (const glm::dvec2& p : ring) middle += p / static_cast<double>(ring.size());
         if (!outline.name.empty()) map_.places.push_back({outline.name, middle, 500.0, 4});
         std::vector<std::vector<glm::dvec2>> holes;
-        for (const auto& hole : outline.holes) holes.push_back(placesOf(hole));
+        std::size_t corners = ring.size();
+        for (const auto& hole : outline.holes) // as many as are seen: joining them takes the square of their corners
+            if ((corners += hole.size()) <= 4 * kMostCorners) holes.push_back(placesOf(hole));
         addBuilding(map_, ring, holes, outline.shape, number);
         ++report_.buildings;
     }

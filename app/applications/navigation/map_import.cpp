@@ -126,7 +126,7 @@ std::string figuresOf(const ImportedMap& imported) {
                           {"buildings", imported.report.buildings},
                           {"tallest", tallest},
                           {"passedOver", imported.report.passedOver}}
-        .dump();
+        .dump(-1, ' ', false, nlohmann::json::error_handler_t::replace); // names of files may be no UTF-8
 }
 
 } // namespace lumorph::navigation

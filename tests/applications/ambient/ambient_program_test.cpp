@@ -382,9 +382,10 @@ TEST(AmbientProgram, AForecastThatComesAgainAndAgainIsShownByTheRealClock) {
     };
     const double now = std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
     EXPECT_NEAR(begunAt({}, feed), now, 60.0);
-    EXPECT_GT(std::abs(begunAt({}, {}) - now), 0.0) << "a simulated year has no now";
+    EXPECT_GT(std::abs(begunAt({}, {}) - now), 3600.0) << "a simulated year has no now";
     EXPECT_NEAR(begunAt({{"begin", "2026-05-17T14:00"}}, feed), *timeFrom("2026-05-17T13:00", 0.0), 600.0);
-    EXPECT_GT(std::abs(begunAt({{"clock", "quick"}, {"begin", "2026-05-17T14:00"}}, feed) - now), 0.0);
+    EXPECT_NEAR(begunAt({{"clock", "quick"}, {"begin", "2026-05-17T14:00"}}, feed), *timeFrom("2026-05-17T13:00", 0.0),
+                600.0);
 }
 
 TEST(AmbientProgram, WhatNobodyFetchesGetsNoOlder) {
