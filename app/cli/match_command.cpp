@@ -198,9 +198,10 @@ const Model::Animation& chooseAnimation(const Model& model, const std::string& p
 }
 
 void matchAnimation(const Matcher& matcher, const MatchArguments& arguments, const Session& session) {
-    const auto [model, warnings] = readModelFile(arguments.target.path);
+    const ReadModel read = readModelFile(arguments.target.path);
+    const Model& model = read.model;
     const Model::Animation& animation = chooseAnimation(model, arguments.target.path, arguments.animation);
-    printWarnings(warnings);
+    printWarnings(read.warnings);
     ClipOptions options;
     options.framesPerSecond = arguments.framesPerSecond;
     options.refined = arguments.method == "refined";

@@ -45,11 +45,12 @@ AssetFiles::File measured(fs::path name, const fs::path& file) {
 void addMesh(const fs::path& file, std::vector<AssetFiles::File>& files) {
     files.push_back(measured(file.filename(), file));
     if (!isGltfFile(file)) return;
-    for (const ReferredFile& referred : filesReferredBy(file))
-        if (!staysInside(referred.name.generic_string()))
+    for (const ReferredFile& referred : filesReferredBy(file)) {
+        if (!staysInside(referred.name))
             throw DataError(file.string(), "refers to " + inQuotes(referred.name.string()) + ", outside of its folder",
                             "put what it needs beside it");
-    if (!referred.missing) files.push_back(measured(referred.name, referred.file));
+        if (!referred.missing) files.push_back(measured(referred.name, referred.file));
+    }
 }
 
 AssetFiles filesOfFolder(const fs::path& folder) {
