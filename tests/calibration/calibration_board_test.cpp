@@ -165,23 +165,23 @@ Printed printed(const std::string& name, bool isWhiteOnBlack = false) {
 Warped seen(const Printed& board) { return warped(board.page); }
 
 TEST(CalibrationBoard, CharucoOfEachDictionaryAndLayoutIsFoundBySaidAndUnsaidName) {
-    struct Printed {
+    struct PrintedAs {
         const char* printedAs;
         const char* said;
         const char* family; ///< that is found
         std::size_t corners;
     };
-    for (const Printed& one :
-         {Printed{"charuco:7x6:30:22:6X6_250", "charuco:7x6:30:22:6X6_250", "6X6", 30},
-          Printed{"charuco:7x6:30:22:6X6_50", "charuco:7x6:30:22", "6X6", 30},
-          Printed{"charuco:7x6:30:22:5X5_100", "charuco:7x6:30:22", "5X5", 30},
-          Printed{"charuco:7x6:30:22:APRILTAG_36h11", "charuco:7x6:30:22:6X6_250", "APRILTAG_36h11", 30},
-          Printed{"charuco:7x6:30:22:old", "charuco:7x6:30:22", "4X4", 30},
-          Printed{"charuco:6x6:30:22:old", "charuco:6x6:30:22", "4X4", 25},
-          Printed{"charuco:7x6:30:22", "charuco:7x6:30:22:old", "4X4", 30},
-          Printed{"charuco:7x6:30:22:7X7_1000:old", "charuco:7x6:30:22:7X7_250", "7X7", 30},
-          Printed{"charuco:4x3:50:35", "charuco:4x3:50:35", "4X4", 6}}) {
-        const Printed board = printed(one.printedAs);
+    for (const PrintedAs& one :
+         {PrintedAs{"charuco:7x6:30:22:6X6_250", "charuco:7x6:30:22:6X6_250", "6X6", 30},
+          PrintedAs{"charuco:7x6:30:22:6X6_50", "charuco:7x6:30:22", "6X6", 30},
+          PrintedAs{"charuco:7x6:30:22:5X5_100", "charuco:7x6:30:22", "5X5", 30},
+          PrintedAs{"charuco:7x6:30:22:APRILTAG_36h11", "charuco:7x6:30:22:6X6_250", "APRILTAG_36h11", 30},
+          PrintedAs{"charuco:7x6:30:22:old", "charuco:7x6:30:22", "4X4", 30},
+          PrintedAs{"charuco:6x6:30:22:old", "charuco:6x6:30:22", "4X4", 25},
+          PrintedAs{"charuco:7x6:30:22", "charuco:7x6:30:22:old", "4X4", 30},
+          PrintedAs{"charuco:7x6:30:22:7X7_1000:old", "charuco:7x6:30:22:7X7_250", "7X7", 30},
+          PrintedAs{"charuco:4x3:50:35", "charuco:4x3:50:35", "4X4", 6}}) {
+        const PrintedAs board = printed(one.printedAs);
         const Warped truth = seen(board);
         const CalibrationBoard said = parseCalibrationBoard(one.said);
         const auto found = findBoard(truth.picture, said);
