@@ -181,7 +181,7 @@ TEST(CalibrationBoard, CharucoOfEachDictionaryAndLayoutIsFoundBySaidAndUnsaidNam
           PrintedAs{"charuco:7x6:30:22", "charuco:7x6:30:22:old", "4X4", 30},
           PrintedAs{"charuco:7x6:30:22:7X7_1000:old", "charuco:7x6:30:22:7X7_250", "7X7", 30},
           PrintedAs{"charuco:4x3:50:35", "charuco:4x3:50:35", "4X4", 6}}) {
-        const PrintedAs board = printed(one.printedAs);
+        const Printed board = printed(one.printedAs);
         const Warped truth = seen(board);
         const CalibrationBoard said = parseCalibrationBoard(one.said);
         const auto found = findBoard(truth.picture, said);
