@@ -517,7 +517,7 @@ TEST(SampleGltf, QuantizedMeshThatRequiresItIsReadInItsNodesMeasures) {
 }
 
 TEST(SampleGltf, CompressionThatIsNotReadIsRefusedByName) {
-    for (const char* extension : {"KHR_draco_mesh_compression", "EXT_meshopt_compression", "KHR_node_visibility"}) {
+    for (const char* extension : {"KHR_draco_mesh_compression", "EXT_meshopt_compression", "KHR_gaussian_splatting"}) {
         LiftedBox sample;
         sample.builder.document["extensionsRequired"] = {extension};
         expectRefused(sample.builder, {extension, "export it without"});
