@@ -128,7 +128,8 @@ bool isDrawnPattern(const CapturedView& view) {
         double least = 0.0;
         double most = 0.0;
         cv::minMaxLoc(grey, &least, &most);
-        if (cv::countNonZero((grey == least) | (grey == most)) != static_cast<int>(grey.total())) return false;
+        if (least == most || cv::countNonZero((grey == least) | (grey == most)) != static_cast<int>(grey.total()))
+            return false;
     }
     return true;
 }

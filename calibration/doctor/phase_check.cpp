@@ -202,6 +202,7 @@ std::optional<Finding> bentByCurve(const CapturedView& view, const std::vector<c
     constexpr float kMostSwing = 1.08F, kCut = 1.5F;
     constexpr double kMostCut = 0.1;
     for (const StepImages& set : sets) {
+        if (set.images.size() > 3) continue; // four steps or more bear it
         const cv::Mat1f amplitude = turnsOf(images, set.images).amplitude;
         const float least = leastOf(amplitude);
         std::vector<float> swings;

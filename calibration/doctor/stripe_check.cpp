@@ -152,30 +152,53 @@ std::optional<Finding> wrongDirection(const std::vector<BitStripes>& bits, const
     return std::nullopt;
 }
 
-/// A finer bit of a Gray code has twice as many stripes as the next coarser one, and blur takes the finest first.
+/// A finer bit of a Gray code has twice as many stripes as the next coarser one, and blur takes the finest first. Two
+/// bits, or all, are named where the numbers of stripes rise once they are put back: a bit that somebody moved in has
+/// edges of its own.
 std::optional<Finding> wrongFineness(const std::vector<BitStripes>& bits, const CapturedView& view,
                                      const CaptureOrder& order) {
-    constexpr double kUnseen = 0.35, kSureStrength = 0.75, kFewestLines = 3.0, kFewer = 0.6;
-    const auto words = [&](const BitStripes& bit) {
-        return "'" + wordsOf(order.images[static_cast<std::size_t>(bit.pattern)]) + "'";
+    constexpr double kUnseen = 0.35, kSureStrength = 0.75, kWeaker = 0.6, kRising = 0.8;
+    constexpr double kFewestLines = 3.0;
+    if (bits.size() < 3) return std::nullopt;
+    std::vector<double> lines; // the coarsest first; of those that are seen
+    std::vector<std::size_t> seen;
+    for (std::size_t i = 0; i < bits.size(); ++i)
+        if (bits[i].strength > kUnseen) lines.push_back(bits[i].lines), seen.push_back(i);
+    const auto isRising = [](const std::vector<double>& all) {
+        double most = 0.0;
+        for (const double here : all) {
+            if (here < kRising * most && most > kFewestLines) return false;
+            most = std::max(most, here);
+        }
+        return true;
     };
-    for (std::size_t coarse = 0; coarse < bits.size(); ++coarse)
-        for (std::size_t fine = coarse + 1; fine < bits.size(); ++fine) {
-            const BitStripes& one = bits[coarse];
-            const BitStripes& other = bits[fine];
-            const bool isLost = one.strength < kUnseen && other.strength > kSureStrength;
-            const bool isWeaker = one.strength < kSureStrength * other.strength && one.lines > kFewestLines &&
-                                  other.lines < kFewer * one.lines;
-            const bool hasFewer = one.strength > kSureStrength && other.strength > kSureStrength &&
-                                  one.lines > kFewestLines && other.lines < kFewer * one.lines;
-            if (!isLost && !isWeaker && !hasFewer) continue;
-            const bool isReversed = coarse == 0 && bits.back().lines < 0.5 * kFewestLines && bits.size() > 4 &&
-                                    bits[1].lines > bits[bits.size() - 2].lines;
-            return Finding{Cause::bitOrder, view.name, fileOf(view, one.pattern),
-                           isReversed ? "the bits stand in reverse: the finest stripes come first"
-                                      : words(one) + " has finer stripes than " + words(other),
-                           isReversed ? "say so in an order file: bit 0 first"
-                                      : "put the images into the order of the patterns, or correct the order file"};
+    const auto words = [&](std::size_t bit) {
+        return "'" + wordsOf(order.images[static_cast<std::size_t>(bits[bit].pattern)]) + "'";
+    };
+    const auto found = [&](std::size_t bit, const std::string& why, const std::string& remedy) {
+        return Finding{Cause::bitOrder, view.name, fileOf(view, bits[bit].pattern), why, remedy};
+    };
+    constexpr const char* kPutInOrder = "put the images into the order of the patterns, or correct the order file";
+    const bool isOrdered = isRising(lines);
+    const bool isReversed = lines.size() > 3 && !isOrdered && isRising({lines.rbegin(), lines.rend()});
+    // The coarsest of all is blurred away, though finer ones are not.
+    const bool isFinestFirst =
+        bits.front().strength < kUnseen && bits.back().strength > kSureStrength && bits.back().lines < kFewestLines;
+    if (isReversed || isFinestFirst)
+        return found(0, "the bits stand in reverse: the finest stripes come first",
+                     "say so in an order file: bit 0 first");
+    for (std::size_t i = 0; i < bits.size(); ++i)
+        for (std::size_t k = i + 1; k < bits.size(); ++k)
+            if (bits[i].strength < kResolvedShare && bits[k].strength > kSureStrength &&
+                bits[i].strength < kWeaker * bits[k].strength)
+                return found(i, words(i) + " has finer stripes than " + words(k), kPutInOrder);
+    if (isOrdered) return std::nullopt;
+    for (std::size_t i = 0; i < lines.size(); ++i)
+        for (std::size_t k = i + 1; k < lines.size(); ++k) {
+            std::vector<double> exchanged = lines;
+            std::swap(exchanged[i], exchanged[k]);
+            if (isRising(exchanged))
+                return found(seen[i], words(seen[i]) + " has finer stripes than " + words(seen[k]), kPutInOrder);
         }
     return std::nullopt;
 }
