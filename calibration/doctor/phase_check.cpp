@@ -200,7 +200,7 @@ std::string axisWords(PatternAxis axis) { return axis == PatternAxis::columns ? 
 std::optional<Finding> bentByCurve(const CapturedView& view, const std::vector<cv::Mat>& images,
                                    const std::vector<StepImages>& sets) {
     constexpr float kMostSwing = 1.08F, kCut = 1.5F;
-    constexpr double kMostCut = 0.1;
+    constexpr double kMostCut = 0.9; // a strong gamma makes black of much as well
     for (const StepImages& set : sets) {
         if (set.images.size() > 3) continue; // four steps or more bear it
         const cv::Mat1f amplitude = turnsOf(images, set.images).amplitude;
