@@ -153,7 +153,7 @@ std::vector<std::vector<int>> mixedOrders(int steps) {
     }
     for (std::size_t k = 1; k < usual.size(); ++k) {
         std::vector<int> other = usual;
-        std::ranges::rotate(other, other.begin() + static_cast<std::ptrdiff_t>(k));
+        std::rotate(other.begin(), other.begin() + static_cast<std::ptrdiff_t>(k), other.end());
         all.push_back(other);
     }
     std::vector<int> back = usual;
