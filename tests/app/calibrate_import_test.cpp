@@ -6,6 +6,7 @@
 #include "core/scene/project.h"
 #include "tests/app/process.h"
 #include "tests/core/temporary_folder.h"
+#include "tests/support/cut_tablet.h"
 
 namespace lumorph::test {
 namespace {
@@ -55,7 +56,9 @@ TEST(CalibrateImport, AppliesLensesToAProject) {
     const Outcome nowhere = lumorph({"calibrate", "import", file, "--apply"});
     EXPECT_NE(nowhere.exitCode, 0);
     EXPECT_THAT(nowhere.err, HasSubstr("--project"));
-    writeProject(Project(), project);
+    Project begun;
+    begun.rig = writeCutTablet(folder.path()).filename().string();
+    writeProject(begun, project);
     const Outcome applied = lumorph({"calibrate", "import", file, "--project", project, "--apply", "--json"});
     ASSERT_EQ(applied.exitCode, 0) << applied.err;
     EXPECT_EQ(applied.json()["applied"], true);
