@@ -548,6 +548,7 @@ private:
         std::vector<std::size_t> worst(count);
         std::iota(worst.begin(), worst.end(), std::size_t{0});
         std::ranges::stable_sort(worst, std::greater<>(), [this](std::size_t v) {
+            if (v >= result_.views.size()) return 0.0; // a solution that was begun anew
             return result_.views[v].heldOut.value_or(result_.views[v].projectorRms);
         });
         for (std::size_t i = 0; i < std::min(count, kMostTrials); ++i) attempt(worst[i], worst[i] + 1);
