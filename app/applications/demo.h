@@ -52,7 +52,7 @@ struct ProgramStart {
     /// Takes what there is to say of the start: what of a map could not be shown.
     std::function<void(const std::string&)> note = [](const std::string&) {};
     DemoFeed feed = {}; ///< what comes while it runs; empty: nothing does
-    /// Takes figures of what it was told, for programs: a name, and a JSON value.
+    /// Takes figures of its input, for programs: a name, and a JSON value.
     std::function<void(const std::string& name, const std::string& json)> figures = [](const auto&, const auto&) {};
 };
 

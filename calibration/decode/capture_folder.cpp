@@ -122,7 +122,7 @@ bool isDrawnPattern(const CapturedView& view) {
         cv::Mat grey;
         try {
             grey = readGrey(view.files[i], view.name);
-        } catch (const CaptureRefused&) { // told when it is read as a pose
+        } catch (const CaptureRefused&) { // the error is reported when the pose is read
             return false;
         }
         double least = 0.0;

@@ -112,7 +112,7 @@ ShowContent AmbientProgram::frame(const ShowMoment& moment) {
 /// A later forecast is read beside the show; one that cannot be read leaves the last.
 void AmbientProgram::takeNews(double step) {
     if (!settings_.feed) return;
-    // By the clock where there is one: the show rests while nobody looks.
+    // By the wall clock where there is one: a show that is not seen does not run.
     const double now = settings_.now ? settings_.now() : 0.0;
     newsAge_ += settings_.now ? std::max(0.0, now - std::exchange(agedUntil_, now)) : step;
     if (reading_.valid()) {

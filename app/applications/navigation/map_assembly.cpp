@@ -72,7 +72,7 @@ void leaveOutTheFar(MapSources& sources, MapReport& report) {
         x.push_back(p.x);
         y.push_back(p.y);
     });
-    if (x.size() < 3) return; // of two nobody knows which is far
+    if (x.size() < 3) return; // two places have no middle
     const glm::dvec2 middle(medianOf(x), medianOf(y));
     each([&](const glm::dvec2& p) { distances.push_back(glm::distance(p, middle)); });
     const double far = kFarther * medianOf(distances, kMost) + kNear;
