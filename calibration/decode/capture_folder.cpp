@@ -90,9 +90,9 @@ bool isNamedBefore(const std::filesystem::path& one, const std::filesystem::path
     };
     // The stem first: "shot" is before "shot (1)", though a space is before a point.
     const auto stems = compared(lowerCase(one.stem().string()), lowerCase(other.stem().string()));
-    if (stems != 0) return stems < 0;
+    if (std::is_neq(stems)) return std::is_lt(stems);
     const auto names = compared(lowerCase(one.filename().string()), lowerCase(other.filename().string()));
-    return names != 0 ? names < 0 : one.filename().string() < other.filename().string();
+    return std::is_neq(names) ? std::is_lt(names) : one.filename().string() < other.filename().string();
 }
 
 std::vector<std::filesystem::path> imagesIn(const std::filesystem::path& folder) {

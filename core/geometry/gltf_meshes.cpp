@@ -87,8 +87,7 @@ private:
         accessors_.budget().charge(corner.size(), sizeof(std::uint32_t), place_);
         own_ = corner;
         std::ranges::sort(own_);
-        const auto repeats = std::ranges::unique(own_);
-        own_.erase(repeats.begin(), repeats.end());
+        own_.erase(std::unique(own_.begin(), own_.end()), own_.end());
         if (own_.size() == stored_) return own_.clear();
         for (std::uint32_t& c : corner)
             c = static_cast<std::uint32_t>(std::ranges::lower_bound(own_, c) - own_.begin());

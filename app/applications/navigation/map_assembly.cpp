@@ -154,7 +154,7 @@ void addRoof(Building& building, const BuildingShape& shape) {
     building.roof = shape.form;
     building.eaves = building.ridge - std::min(shape.roof, building.ridge - building.base - building.over);
     if (outline.size() == 4 && glm::distance(outline[1], outline[2]) > glm::distance(outline[0], outline[1]))
-        std::ranges::rotate(outline, outline.begin() + 1);
+        std::rotate(outline.begin(), outline.begin() + 1, outline.end());
 }
 
 void addBuilding(Map& map, const std::vector<glm::dvec2>& ring, const std::vector<std::vector<glm::dvec2>>& holes,

@@ -132,7 +132,7 @@ std::vector<glm::dvec2> bridged(std::vector<glm::dvec2> outline, std::vector<std
     for (std::size_t h = 0; h < holes.size(); ++h) {
         std::vector<glm::dvec2>& hole = holes[h];
         if ((doubleArea(hole) > 0.0) == clockwise) std::ranges::reverse(hole); // round the other way
-        std::ranges::rotate(hole, hole.begin() + (eastmost(hole) - hole.cbegin()));
+        std::rotate(hole.begin(), hole.begin() + (eastmost(hole) - hole.cbegin()), hole.end());
         const glm::dvec2 from = hole.front();
         std::vector<std::size_t> order(outline.size());
         std::iota(order.begin(), order.end(), std::size_t{0});
