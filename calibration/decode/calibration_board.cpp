@@ -213,6 +213,7 @@ std::vector<SeenMarker> markersOfBoard(const CalibrationBoard& board, const std:
     }
     if (all.size() < 2) return {};
     std::vector<const SeenMarker*> pointers;
+    pointers.reserve(all.size());
     for (const SeenMarker& marker : all) pointers.push_back(&marker);
     constexpr double kTolerance = 0.35; // of a marker's side: a lens bends a board, a wrong layout moves it by a square
     cv::Mat fits;
@@ -259,6 +260,7 @@ BoardPoints cornersOf(const cv::Mat& grey, const CalibrationBoard& board, const 
                             std::abs(marker->square.y + 0.5 - corner.y / board.spacing));
         };
         std::vector<const SeenMarker*> nearest;
+        nearest.reserve(markers.size());
         for (const SeenMarker& marker : markers) nearest.push_back(&marker);
         std::ranges::stable_sort(nearest, {}, squaresAway);
         if (squaresAway(nearest.front()) > 0.6) continue; // no marker beside it was seen

@@ -73,6 +73,7 @@ void repeatFor(const std::vector<ViewObservations>& views, const std::vector<std
     result.views.clear();
     result.state.cameraFromBoard.clear();
     std::vector<int> from; // place of each row of the covariance in what was solved
+    from.reserve(kPosePlace);
     for (int i = 0; i < kPosePlace; ++i) from.push_back(i);
     for (std::size_t v = 0; v < views.size(); ++v) {
         result.views.push_back(qualities.at(place[v]));

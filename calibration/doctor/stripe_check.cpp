@@ -238,6 +238,7 @@ double orderUnder(const Mixup& mixup, const std::vector<StripeEdge>& edges, std:
 /// The finest first where two explain as much, as one bit alone is likelier than all.
 std::vector<Mixup> mixupsOf(int bits) {
     std::vector<Mixup> all;
+    all.reserve(static_cast<std::size_t>(bits));
     for (int bit = 0; bit < bits; ++bit) all.push_back({1U << bit, -1, -1});
     for (int bit = 0; bit < bits; ++bit)
         for (int other = bit + 1; other < bits; ++other) all.push_back({0, other, bit});
@@ -281,9 +282,9 @@ std::optional<Finding> checkStripes(const CapturedView& view, const std::vector<
                                     const CaptureOrder& order) {
     for (const PatternAxis axis : {PatternAxis::columns, PatternAxis::rows}) {
         const StripeWalk walk(images, order, axis);
-        if (const auto misplaced = wrongFineness(walk.all(), view, order)) return misplaced;
-        if (const auto turned = wrongDirection(walk.bits(), view, order)) return turned;
-        if (const auto mixed = wrongCodes(walk, view, order)) return mixed;
+        if (auto misplaced = wrongFineness(walk.all(), view, order)) return misplaced;
+        if (auto turned = wrongDirection(walk.bits(), view, order)) return turned;
+        if (auto mixed = wrongCodes(walk, view, order)) return mixed;
     }
     return std::nullopt;
 }

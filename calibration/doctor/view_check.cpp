@@ -236,7 +236,10 @@ std::optional<cv::Size> largestChessboard(const cv::Mat1b& white, cv::Size least
     const cv::Size size = meta.size();
     if (size.area() != static_cast<int>(corners.size()) || size.width < 2 || size.height < 2) return std::nullopt;
     // Two squares beyond each corner of it.
-    const auto at = [&](int column, int row) { return corners[static_cast<std::size_t>(row * size.width + column)]; };
+    const auto at = [&](int column, int row) {
+        return corners[static_cast<std::size_t>(row) * static_cast<std::size_t>(size.width) +
+                       static_cast<std::size_t>(column)];
+    };
     const cv::Rect2f picture(0.0F, 0.0F, static_cast<float>(white.cols), static_cast<float>(white.rows));
     for (const int column : {0, size.width - 1})
         for (const int row : {0, size.height - 1}) {

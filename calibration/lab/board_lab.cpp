@@ -370,18 +370,20 @@ BoardLab::~BoardLab() = default;
 BoardLab::BoardLab(BoardLab&&) noexcept = default;
 BoardLab& BoardLab::operator=(BoardLab&&) noexcept = default;
 
-std::vector<glm::dmat4> BoardLab::proposePoses(int count) const {
-    std::vector<glm::dmat4> poses = possiblePoses(count);
+std::vector<glm::dmat4> BoardLab::proposePoses(int count, const Progress& progress) const {
+    std::vector<glm::dmat4> poses = possiblePoses(count, progress);
     if (static_cast<int>(poses.size()) < count)
         throw InvalidInput("board in the lab", "it does not fit into what camera and projector both see",
                            "use a smaller board, or move camera and projector away");
     return poses;
 }
 
-std::vector<glm::dmat4> BoardLab::possiblePoses(int count) const {
+std::vector<glm::dmat4> BoardLab::possiblePoses(int count, const Progress& progress) const {
     std::vector<glm::dmat4> poses;
     if (!data_->isSeen(data_->flatPose())) return poses;
     for (int i = 0; i < count; ++i) {
+        progress.throwIfCancelled();
+        progress.report(static_cast<double>(i) / count, "looking for poses of the board");
         std::mt19937 dice(data_->seed * 7919U + static_cast<std::uint32_t>(i));
         const auto pose = i == 0 ? data_->flatPose() : data_->tiltedPose(i, dice);
         if (pose) poses.push_back(*pose);

@@ -10,6 +10,7 @@
 
 #include "calibration/decode/calibration_board.h"
 #include "calibration/lab/lab.h"
+#include "core/base/progress.h"
 
 namespace lumorph {
 
@@ -55,10 +56,11 @@ public:
     /// Poses (the world from the board's frame, metres) in which camera and projector both see all of the board: the
     /// first flat on the table around the world's origin, x along the world's +x and the printed side up, so that it
     /// can tell where the world is; the others tilted by 15 to 40 degrees to all sides, over the lit place. The same
-    /// for the same seed; a longer list begins as a shorter one. Throws InvalidInput where the board does not fit.
-    [[nodiscard]] std::vector<glm::dmat4> proposePoses(int count) const;
+    /// for the same seed; a longer list begins as a shorter one. Throws InvalidInput where the board does not fit,
+    /// Cancelled.
+    [[nodiscard]] std::vector<glm::dmat4> proposePoses(int count, const Progress& progress = {}) const;
     /// The same, without those of so many for which there is no place.
-    [[nodiscard]] std::vector<glm::dmat4> possiblePoses(int count) const;
+    [[nodiscard]] std::vector<glm::dmat4> possiblePoses(int count, const Progress& progress = {}) const;
 
     /// Lays the board there; before the first call there is none. Throws InvalidInput for a matrix that is no rotation
     /// and translation.

@@ -36,13 +36,13 @@ BoardTexture::BoardTexture(const CalibrationBoard& board) : board_(board) {
 void BoardTexture::addMarkers() {
     const auto dictionary = cv::aruco::getPredefinedDictionary(markerDictionaryOf(board_));
     markerCells_ = dictionary->markerSize + 2; // with the border
-    markerOfSquare_.assign(static_cast<std::size_t>(board_.columns * board_.rows), -1);
+    markerOfSquare_.assign(static_cast<std::size_t>(board_.columns) * static_cast<std::size_t>(board_.rows), -1);
     for (const cv::Point& square : markerSquaresOf(board_)) {
         const double edge = 0.5 * (board_.spacing - board_.marker);
         Marker marker{{board_.spacing * square.x + edge, board_.spacing * square.y + edge}, {}};
         const auto number = static_cast<int>(markers_.size());
         cv::aruco::drawMarker(dictionary, number, markerCells_, marker.cells, 1);
-        markerOfSquare_.at(static_cast<std::size_t>(square.y * board_.columns + square.x)) = number;
+        markerOfSquare_.at(placeOf(square.x, square.y)) = number;
         markers_.push_back(marker);
     }
 }
@@ -70,7 +70,7 @@ bool BoardTexture::isInk(double x, double y) const noexcept {
     const int i = static_cast<int>(std::floor(column));
     const int j = static_cast<int>(std::floor(row));
     if (chess) return (i + j) % 2 == 0;
-    const int marker = markerOfSquare_[static_cast<std::size_t>(j * board_.columns + i)];
+    const int marker = markerOfSquare_[placeOf(i, j)];
     return marker < 0 || isMarkerInk(markers_[static_cast<std::size_t>(marker)], x, y);
 }
 

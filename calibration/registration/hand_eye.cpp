@@ -92,6 +92,7 @@ void checkClocks(const Fit& fit, const PoseTrack& b, const Unknowns& solved, Pla
     }
     const double usual = median(offsets);
     std::vector<double> from;
+    from.reserve(offsets.size());
     for (const double offset : offsets) from.push_back(std::abs(offset - usual));
     const double spread = std::max(0.004, median(from));
     for (std::size_t cut = 2; cut + 1 < offsets.size(); ++cut) {

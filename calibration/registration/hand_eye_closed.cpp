@@ -81,6 +81,7 @@ void checkTurns(const std::vector<Motion>& motions, std::span<const Both> both) 
 std::vector<Motion> agreeing(const std::vector<Motion>& motions) {
     std::vector<double> differences;
     const auto difference = [](const Motion& m) { return std::abs(glm::length(m.turnA) - glm::length(m.turnB)); };
+    differences.reserve(motions.size());
     for (const Motion& m : motions) differences.push_back(difference(m));
     const double usual = std::max(0.2 * kDegree, median(differences));
     std::vector<Motion> kept;
@@ -109,6 +110,7 @@ glm::dquat rotationOf(std::vector<Motion>& motions) {
         const Eigen::Quaterniond q(
             Eigen::Matrix3d(svd.matrixU() * Eigen::Vector3d(1.0, 1.0, hand).asDiagonal() * svd.matrixV().transpose()));
         rotation = {q.w(), q.x(), q.y(), q.z()};
+        left.reserve(motions.size());
         for (const Motion& m : motions) left.push_back(glm::length(m.turnB - rotation * m.turnA));
         limit = 3.0 * std::max(0.1 * kDegree, median(left));
     }
@@ -152,6 +154,7 @@ PlaceFit placeOf(const std::vector<Motion>& motions, const glm::dquat& bFromA, b
             solution = normal.ldlt().solve(right);
         }
         std::vector<double> left;
+        left.reserve(motions.size());
         for (const Motion& m : motions) left.push_back((rowsOf(m) * solution + eigen(m.b.position)).norm());
         usual = std::max(1e-6, median(left));
         fit = {{solution[0], solution[1], solution[2]}, solution[3], 0.0, usual};

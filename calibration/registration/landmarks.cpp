@@ -59,6 +59,7 @@ struct Touched {
 
 std::vector<Touched> touchedPlaces(const std::vector<TimedPose>& seen, const glm::dvec3& tip, double radius) {
     std::vector<TimedPlace> tips;
+    tips.reserve(seen.size());
     for (const TimedPose& at : seen) tips.push_back({at.seconds, at.pose * tip});
     std::vector<Touched> touched;
     for (const Dwell& dwell : findDwells(tips, 0.8, radius)) {
@@ -77,6 +78,7 @@ std::vector<Touched> touchedPlaces(const std::vector<TimedPose>& seen, const glm
 
 std::vector<glm::dvec3> placesOf(const std::vector<Touched>& touched) {
     std::vector<glm::dvec3> places;
+    places.reserve(touched.size());
     for (const Touched& t : touched) places.push_back(t.place);
     return places;
 }
@@ -163,6 +165,7 @@ void explainByTurns(const std::vector<TimedPose>& seen, std::span<const glm::dve
     OtherTip other;
     forEachRun(touched, model.size(), [&](const std::vector<Touched>& run) {
         std::vector<glm::dvec3> places;
+        places.reserve(run.size());
         for (const Touched& t : run) places.push_back(t.place);
         try {
             const RigidFit fit = fitRigid(places, model);
@@ -277,6 +280,7 @@ LandmarkFit fitLandmarks(const PoseTrack& recordedPointer, const std::optional<P
                              "record both at the same time and by one clock");
     const std::vector<Touched> touched = touchedPlaces(seen, tip, kRests);
     std::vector<glm::dvec3> points;
+    points.reserve(model.size());
     for (const NamedPoint& point : model) points.push_back(point.place);
     if (touched.size() < 3) {
         explainByTurns(seen, points, tip);

@@ -40,6 +40,7 @@ glm::dvec3 middleOfTips(const std::vector<Moment>& moments, const glm::dvec3& ti
     glm::dvec3 middle;
     for (int axis = 0; axis < 3; ++axis) {
         std::vector<double> values;
+        values.reserve(moments.size());
         for (const Moment& m : moments) values.push_back((m.pointer * tip)[axis]);
         middle[axis] = median(std::move(values));
     }
@@ -86,6 +87,7 @@ Rest restOf(const Touch& touch, const glm::dvec3& tip, double wander) {
     const glm::dvec3 middle = middleOfTips(moments, tip);
     const auto from = [&](const Moment& m) { return glm::distance(m.pointer * tip, middle); };
     std::vector<double> away;
+    away.reserve(moments.size());
     for (const Moment& m : moments) away.push_back(from(m));
     const double usual = median(away);
     if (usual > wander)

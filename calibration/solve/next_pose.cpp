@@ -14,7 +14,7 @@ namespace lumorph {
 namespace {
 
 constexpr int kPointsAcross = 14, kPointsDown = 10; // of a planned view, in the projector
-constexpr double kLitShare = 0.5;                   // of the board that the projector must reach
+constexpr double kLitShares[] = {0.95, 0.5};        // of the board that the projector must reach: best nearly all
 constexpr double kMargin = 0.02;                    // of the camera's picture that stays free around the board
 constexpr double kTiltsDegrees[] = {22.0, 45.0};    // more, and a board's points are hard to find
 constexpr double kUnknownCorner = 0.003; // of the width: what a distortion that was left out may do at the corner
@@ -74,7 +74,8 @@ public:
     }
 
     /// The board's middle at `middle`, tilted around x and y; nothing where one of the devices cannot see it.
-    [[nodiscard]] std::optional<PoseVector> poseAt(const Eigen::Vector3d& middle, double tiltX, double tiltY) const {
+    [[nodiscard]] std::optional<PoseVector> poseAt(const Eigen::Vector3d& middle, double tiltX, double tiltY,
+                                                   double litShare) const {
         const glm::dvec3 centre(0.5 * (low_.x + high_.x), 0.5 * (low_.y + high_.y), 0.0);
         const glm::dvec3 way =
             glm::dvec3(middle.x(), middle.y(), middle.z()) - Rigid::exp({tiltX, tiltY, 0.0, 0.0, 0.0, 0.0}) * centre;
@@ -83,7 +84,7 @@ public:
         const double margin = kMargin * calibration_.camera.size.width;
         for (const cv::Point2d& seen : view.corners.seen)
             if (!isInside(seen, calibration_.camera.size, margin)) return std::nullopt;
-        if (static_cast<double>(view.projector.size()) < kLitShare * kPointsAcross * kPointsDown) return std::nullopt;
+        if (static_cast<double>(view.projector.size()) < litShare * kPointsAcross * kPointsDown) return std::nullopt;
         return pose;
     }
 
@@ -187,14 +188,14 @@ double roughError(const std::vector<Eigen::Matrix2d>& uncertainty) {
 } // namespace
 
 std::optional<NextPose> suggestNextPose(const ProcamCalibration& calibration, const CalibrationBoard& board,
-                                        const PoseSearch& search, const Progress& progress) {
-    double nearest = search.nearest;
-    double farthest = search.farthest;
+                                        const PoseSearch& wanted, const Progress& progress) {
+    double nearest = wanted.nearest;
+    double farthest = wanted.farthest;
     for (const PoseVector& pose : calibration.state.cameraFromBoard) {
-        if (!(search.nearest > 0.0)) nearest = nearest > 0.0 ? std::min(nearest, pose[5]) : pose[5];
-        if (!(search.farthest > 0.0)) farthest = std::max(farthest, pose[5]);
+        if (!(wanted.nearest > 0.0)) nearest = nearest > 0.0 ? std::min(nearest, pose[5]) : pose[5];
+        if (!(wanted.farthest > 0.0)) farthest = std::max(farthest, pose[5]);
     }
-    std::vector<LitPlace> places = search.places;
+    std::vector<LitPlace> places = wanted.places;
     if (places.empty()) places = litPlaces(calibration, nearest, farthest);
     const WorldPose world;
     std::erase_if(places, [&](const LitPlace& place) {
@@ -213,18 +214,22 @@ std::optional<NextPose> suggestNextPose(const ProcamCalibration& calibration, co
     std::optional<PoseVector> best;
     double least = 0.0;
     const std::vector<Eigen::Vector3d> middles = gridOf(kMiddles, calibration, nearest, farthest);
-    for (std::size_t i = 0; i < middles.size(); ++i) {
-        progress.throwIfCancelled();
-        progress.report(static_cast<double>(i) / static_cast<double>(middles.size()), "looking for the next pose");
-        for (const auto& [x, y] : tilts) {
-            const std::optional<PoseVector> pose = planner.poseAt(middles[i], x, y);
-            if (!pose) continue;
-            const double error = roughError(lightUncertainty(calibration, planner.covariance(pose), world, places));
-            if (best && error >= least) continue;
-            best = pose;
-            least = error;
+    const auto search = [&](double litShare) {
+        for (std::size_t i = 0; i < middles.size(); ++i) {
+            progress.throwIfCancelled();
+            progress.report(static_cast<double>(i) / static_cast<double>(middles.size()), "looking for the next pose");
+            for (const auto& [x, y] : tilts) {
+                const std::optional<PoseVector> pose = planner.poseAt(middles[i], x, y, litShare);
+                if (!pose) continue;
+                const double error = roughError(lightUncertainty(calibration, planner.covariance(pose), world, places));
+                if (best && error >= least) continue;
+                best = pose;
+                least = error;
+            }
         }
-    }
+    };
+    for (const double litShare : kLitShares)
+        if (!best) search(litShare);
     if (!best) return std::nullopt;
     const Errors before = errorsOf(lightUncertainty(calibration, planner.covariance({}), world, places));
     const Errors after = errorsOf(lightUncertainty(calibration, planner.covariance(best), world, places));
@@ -234,7 +239,7 @@ std::optional<NextPose> suggestNextPose(const ProcamCalibration& calibration, co
                     after.mean,
                     before.worst,
                     after.worst,
-                    after.mean < (1.0 - search.worthwhile) * before.mean};
+                    after.mean < (1.0 - wanted.worthwhile) * before.mean};
 }
 
 } // namespace lumorph

@@ -81,7 +81,7 @@ std::optional<fs::path> confinedPath(const fs::path& folder, const fs::path& rel
     const fs::path root = fs::weakly_canonical(folder.empty() ? "." : folder, failed);
     if (failed) return std::nullopt;
     const fs::path plain = relative.lexically_normal();
-    const auto target = followed(root, root / plain);
+    auto target = followed(root, root / plain);
     if (!target || fs::exists(fs::symlink_status(*target, failed))) return target;
     for (const fs::path& words : {plain, withSlashes(relative).lexically_normal()}) {
         if (!staysInside(words)) return std::nullopt;

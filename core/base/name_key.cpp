@@ -288,9 +288,9 @@ void addDecomposed(std::u32string& key, char32_t c) {
     constexpr char32_t kTails = 28, kVowels = 21, kLeads = 19;
     if (c >= kHangul && c < kHangul + kLeads * kVowels * kTails) {
         const char32_t index = c - kHangul;
-        key += kLead + index / (kVowels * kTails);
-        key += kVowel + index / kTails % kVowels;
-        if (index % kTails != 0) key += kTail + index % kTails;
+        key += static_cast<char32_t>(kLead + index / (kVowels * kTails));
+        key += static_cast<char32_t>(kVowel + index / kTails % kVowels);
+        if (index % kTails != 0) key += static_cast<char32_t>(kTail + index % kTails);
         return;
     }
     const auto found =

@@ -122,6 +122,26 @@ TEST(NextPose, ThePoseIsSeenByBothDevicesAndItsOutlineIsWhereTheCameraSeesIt) {
     }
 }
 
+TEST(NextPose, LiesWhereTheProjectorShines) {
+    for (const std::uint32_t seed : {23U, 24U, 25U, 26U}) {
+        ProcamSetup setup = randomSetup(seed, 4);
+        // A tele lens, so that the light is a part of what the camera sees.
+        setup.projector.focal *= 1.5;
+        const auto next = suggestNextPose(solvePoses(setup, seed), boardOf(setup));
+        ASSERT_TRUE(next) << seed;
+        const glm::dmat4 pose = matrixOf(next->cameraFromBoard);
+        int lit = 0;
+        for (int row = 0; row < setup.rows; ++row)
+            for (int column = 0; column < setup.columns; ++column) {
+                const glm::dvec4 at = pose * glm::dvec4(setup.square * column, setup.square * row, 0.0, 1.0);
+                const auto pixel = pixelOf(setup.projector, glm::dvec3(at));
+                lit += pixel && pixel->x > -2.0 && pixel->y > -2.0 && pixel->x < setup.projector.size.x + 1.0 &&
+                       pixel->y < setup.projector.size.y + 1.0;
+            }
+        EXPECT_GE(lit, 0.9 * setup.rows * setup.columns) << seed;
+    }
+}
+
 TEST(NextPose, WhatItPromisesIsWhatCapturingItBrings) {
     ProcamSetup setup = randomSetup(5, 4);
     const ProcamCalibration before = solvePoses(setup, 5);

@@ -99,6 +99,21 @@ TEST(ReportPage, HoldsFiguresViewsWarningsAndInputs) {
     EXPECT_TRUE(isBalanced(page));
 }
 
+TEST(ReportPage, BeginsWithTheMillimetresThatTheWindowShows) {
+    CalibrationReport report = exampleReport("pose_1");
+    // 95 of 100 of a length that is spread evenly to all sides: the root of -2 ln 0.05 over 2, times its root mean
+    // square.
+    const double rms = 0.75 * std::hypot(60.0, 45.0, 1000.0) / report.record.result.projector.lens[kFocalLength];
+    char text[80];
+    std::snprintf(text, sizeof text, "within <b>%.2f mm</b> of where it should on its boards",
+                  std::sqrt(-std::log(0.05)) * rms);
+    EXPECT_THAT(reportPage(report), HasSubstr(text));
+    report.millimetres = 0.4271;
+    report.where = "where the device stands";
+    EXPECT_THAT(reportPage(report), HasSubstr("within <b>0.43 mm</b> of where it should where the device stands"));
+    EXPECT_THAT(reportPage(report), Not(HasSubstr("on its boards")));
+}
+
 TEST(ReportPage, SaysThatItIsSimulated) {
     CalibrationReport report = exampleReport("pose_1");
     EXPECT_THAT(reportPage(report), Not(HasSubstr("imulated")));

@@ -1,6 +1,7 @@
 #include <filesystem>
 #include <fstream>
 #include <memory>
+#include <random>
 
 #include <QAction>
 #include <QComboBox>
@@ -12,9 +13,12 @@
 #include <QProcess>
 
 #include "app/studio/calibration/capture_bench.h"
+#include "app/studio/calibration/pose_pictures.h"
 #include "app/studio/document/scene_edit.h"
+#include "app/workspaces/calibrate/capture_picture.h"
 #include "calibration/lab/board_lab.h"
 #include "calibration/lab/lab_capture.h"
+#include "calibration/report/calibration_file.h"
 #include "tests/ui/file_dialog.h"
 
 // A projector is calibrated in the window by the mouse alone: in the lab, and from a folder of images with a fault.
@@ -72,6 +76,15 @@ struct Window {
         return studio.state().installation->projectors.front();
     }
     [[nodiscard]] std::size_t notices() { return studio.studio().notices.at("calibrate").size(); }
+    /// The result, as it is exported.
+    [[nodiscard]] CalibrationRecord written() {
+        const fs::path file = folder / "written.json";
+        fs::remove(file);
+        studio.studio().commands.find("calibrate.export")->trigger();
+        answerFileDialog(studio, "calibrate.export.file", file);
+        EXPECT_TRUE(eventually([&] { return fs::exists(file); }, 10s));
+        return readCalibration(file);
+    }
     [[nodiscard]] std::string story() {
         return (title() + " [" + button() + "] " + studio.text("calibrate.card.text")).toStdString();
     }
@@ -129,6 +142,18 @@ TEST_F(Calibrate, TheLabLeadsFromNothingToAProjectorThatTheSceneUses) {
     for (const char* step : {"setup", "poses", "camera", "projector"}) EXPECT_EQ(w.step(step), "Good") << step;
     w.studio.screenshot("calibrate-good");
     EXPECT_EQ(w.notices(), 0U);
+    // One more pose: where it should be is seen, and the result stays until there is a better one.
+    const QString headline = w.studio.text("calibrate.headline");
+    EXPECT_TRUE(headline.endsWith(" mm"));
+    EXPECT_TRUE(eventually(
+        [&] { return w.studio.find<studio::CapturePicture>("calibrate.picture")->marks().ghost.size() == 4; }));
+    w.studio.screenshot("calibrate-another");
+    w.studio.click("calibrate.another");
+    ASSERT_TRUE(w.offers("Cancel", 5s)) << w.story();
+    EXPECT_EQ(w.studio.text("calibrate.headline"), headline);
+    w.next();
+    ASSERT_TRUE(w.offers("Use this calibration", 5s)) << w.story();
+    EXPECT_EQ(w.studio.text("calibrate.headline"), headline);
     const std::vector<fs::path> dated = entriesOf(w.folder / "poses");
     ASSERT_EQ(dated.size(), 1U);
     EXPECT_EQ(entriesOf(dated.front()).size(), 5U) << "four poses, and the mark of the lab";
@@ -175,9 +200,9 @@ TEST_F(Calibrate, AFolderWithAFaultIsRefusedByCausePlaceAndRemedy) {
     LabCapture capture;
     capture.room = smallRoom();
     capture.board = kBoard;
-    capture.poses = 4;
-    capture.seed = 5;
-    capture.fault = Cause::rigMoved;
+    capture.poses = 5;
+    capture.seed = 8;
+    capture.fault = Cause::rigMoved; // it stays moved: in the last pose, so that the others are of one place
     LabCapturer capturer(capture);
     const fs::path folder = w.folder / "captured";
     writeLabCapture(capturer, folder);
@@ -202,6 +227,35 @@ TEST_F(Calibrate, AFolderWithAFaultIsRefusedByCausePlaceAndRemedy) {
     ASSERT_TRUE(w.offers("Use this calibration")) << w.story();
     EXPECT_NE(w.studio.findNow<QLabel>("calibrate.headline"), nullptr);
     w.studio.screenshot("calibrate-mended");
+
+    // From here on what was read is enough: the images may be gone.
+    fs::rename(folder, w.folder / "away");
+    const auto chosen = [&] { return w.studio.findNow<QListWidget>("calibrate.poses.list")->currentRow(); };
+    const auto focal = [&] { return w.studio.text("calibrate.figure.projectorFocal"); };
+    const auto distance = [&] {
+        const CalibrationRecord record = w.written();
+        return cv::norm(cv::Vec3d(&record.result.projectorFromCamera[3]));
+    };
+    const QString withAll = focal();
+    const double apart = distance();
+    auto* list = w.studio.find<QListWidget>("calibrate.poses.list");
+    list->setCurrentRow(1);
+    ASSERT_GE(chosen(), 0);
+    w.studio.click("calibrate.leaveOut");
+    ASSERT_TRUE(w.offers("Use this calibration")) << w.story();
+    EXPECT_NE(focal(), withAll);
+    w.studio.click("calibrate.leaveOut");
+    ASSERT_TRUE(w.offers("Use this calibration")) << w.story();
+    EXPECT_EQ(focal(), withAll) << "the same poses make the same result";
+    // A square that was measured wrongly: all lengths follow it, and nothing else changes.
+    w.studio.enter("calibrate.board.spacing", "50");
+    ASSERT_TRUE(w.offers("Use this calibration")) << w.story();
+    EXPECT_EQ(focal(), withAll);
+    EXPECT_NEAR(distance(), 2.0 * apart, 1e-3 * apart);
+    w.studio.enter("calibrate.board.spacing", "25");
+    ASSERT_TRUE(w.offers("Use this calibration")) << w.story();
+    EXPECT_NEAR(distance(), apart, 1e-3 * apart);
+    fs::rename(w.folder / "away", folder);
 
     // What the images show may be told by a file, which may be wrong.
     const fs::path order = w.folder / "order.txt";
@@ -277,6 +331,16 @@ TEST_F(Calibrate, ImportedFileEndsWithAButtonThatUsesItAndSaysNoMoreThanTheFile)
     EXPECT_TRUE(eventually([&] { return w.title() == "Calibrated, and in use"; }, 10s)) << w.story();
     w.studio.studio().document.undoStack().undo();
 
+    // Names have one ending, and a dialog begins where the one before ended.
+    w.studio.studio().commands.find("calibrate.export")->trigger();
+    auto* dialog = w.studio.find<QFileDialog>("calibrate.export.file");
+    EXPECT_EQ(dialog->directory().absolutePath().toStdString(), w.folder.path().string());
+    EXPECT_EQ(dialog->selectedFiles().value(0).toStdString(), (w.folder / "calibration.json").string());
+    dialog->selectNameFilter(dialog->nameFilters().back());
+    emit dialog->filterSelected(dialog->nameFilters().back());
+    EXPECT_EQ(dialog->selectedFiles().value(0).toStdString(), (w.folder / "calibration.yaml").string());
+    dialog->reject();
+
     importText("fisheye.yaml", kFisheye);
     ASSERT_TRUE(eventually([&] { return w.notices() == 1; }, 10s));
     const studio::Notice notice = w.studio.studio().notices.at("calibrate").front();
@@ -298,6 +362,36 @@ TEST_F(Calibrate, ImportedFileEndsWithAButtonThatUsesItAndSaysNoMoreThanTheFile)
     w.studio.studio().document.undoStack().undo();
     w.studio.studio().commands.find("calibrate.anew")->trigger();
     EXPECT_TRUE(w.offers("Photograph pose 1", 30s)) << w.story();
+}
+
+TEST(BoardGuide, LiesInWhatTheProjectorLights) {
+    const CalibrationBoard board = parseCalibrationBoard(kBoard);
+    for (const cv::Rect lit : {cv::Rect(0, 0, 1280, 1024), cv::Rect(500, 300, 400, 250), cv::Rect(20, 40, 300, 900),
+                               cv::Rect(100, 700, 1100, 200)})
+        for (int pose = 0; pose < 9; ++pose)
+            for (const cv::Point2d& corner : studio::guideOutline(board, lit, 1600.0, pose)) {
+                EXPECT_GE(corner.x, lit.x) << pose << ", " << lit;
+                EXPECT_GE(corner.y, lit.y) << pose << ", " << lit;
+                EXPECT_LE(corner.x, lit.x + lit.width) << pose << ", " << lit;
+                EXPECT_LE(corner.y, lit.y + lit.height) << pose << ", " << lit;
+            }
+}
+
+TEST(PosePictures, KnowWhereLightWasSeenButForStrayPixels) {
+    DecodedView decoded;
+    const cv::Size size(400, 300);
+    for (cv::Mat1f* map : {&decoded.column, &decoded.row, &decoded.confidence}) *map = cv::Mat1f(size, 0.0F);
+    decoded.white = cv::Mat1b(size, uchar(90));
+    const cv::Rect light(120, 60, 200, 150);
+    decoded.confidence(light) = 0.8F;
+    std::mt19937 dice(11);
+    for (int i = 0; i < 200; ++i)
+        decoded.confidence(static_cast<int>(dice() % 300U), static_cast<int>(dice() % 400U)) = 0.3F;
+    const cv::Rect seen = studio::picturesOf(decoded, {1280, 800}).lit;
+    EXPECT_GT((seen & light).area(), 0.9 * light.area());
+    EXPECT_LT((seen | light).area(), 1.05 * light.area());
+    decoded.confidence = 0.0F;
+    EXPECT_TRUE(studio::picturesOf(decoded, {1280, 800}).lit.empty());
 }
 
 } // namespace

@@ -238,6 +238,7 @@ TEST_F(Chain, AllThatIsMissingIsMeasuredOneAfterTheOther) {
         if (link.id == studio::LinkId::room) continue;
         EXPECT_EQ(badge(link.key), link.stage->isWanted ? "Optional" : "Simulated") << link.key << ": " << story();
     }
+    EXPECT_TRUE(window.text("chain.card.text").startsWith("All that was missing is measured.")) << story();
     EXPECT_EQ(room().servos.size(), window.state().rig.rig->actuatorCount());
     EXPECT_EQ(room().projectors.front().responseCurve.size(), 65U);
     EXPECT_GT(room().projectors.front().black.g, 0.0F);
@@ -407,7 +408,7 @@ TEST_F(Chain, WhatTheLabRecordedIsKeptAndSolvedAgainAndStaysSimulated) {
     ASSERT_TRUE(offers("Use it")) << story();
     const std::string told = story();
     window.click("chain.keep");
-    answerFileDialog(window, "chain.keep.folder", folder.path() / "pointer-1", "Keep");
+    answerFileDialog(window, "chain.keep.file", folder.path() / "pointer-1", "Keep");
     ASSERT_TRUE(eventually([&] { return window.text("chain.kept").contains("pointer-1"); }, 20s));
     window.screenshot("chain-recording-kept");
     // It is not used; what is solved again comes to the same.
@@ -578,12 +579,14 @@ TEST_F(Chain, TheWatchTellsAHostThatTheProjectorHasMoved) {
     QAction* watch = window.studio().commands.find("calibrate.watch");
     ASSERT_TRUE(watch->isEnabled());
     watch->setChecked(true);
+    EXPECT_EQ(window.find<QPushButton>("status.watch")->text(), "Watch: looking");
     pass(12s);
     EXPECT_TRUE(window.studio().notices.at("calibrate").empty());
     studio::editInstallation(window.studio().document, "Believed elsewhere",
                              [](Installation& room) { room.projectors.front().camera.cameraFromWorld[3].x += 0.003; });
     // Looks six seconds apart have to agree for ten.
     ASSERT_TRUE(eventually([&] { return !window.studio().notices.at("calibrate").empty(); }, 120s));
+    EXPECT_EQ(window.find<QPushButton>("status.watch")->text(), "Watch: something has moved");
     window.screenshot("watch-moved", 500ms);
     const studio::Notice notice = window.studio().notices.at("calibrate").front();
     ASSERT_EQ(notice.actions.size(), 1U);
@@ -591,6 +594,7 @@ TEST_F(Chain, TheWatchTellsAHostThatTheProjectorHasMoved) {
     EXPECT_EQ(window.window().workspace(), "calibrate");
     EXPECT_EQ(window.text("chain.card.title"), "Check");
     watch->setChecked(false);
+    EXPECT_EQ(window.findNow<QPushButton>("status.watch"), nullptr);
     EXPECT_TRUE(window.studio().notices.at("calibrate").empty()) << "nobody watches any more";
 }
 

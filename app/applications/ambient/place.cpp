@@ -53,7 +53,7 @@ void checkPlace(const Place& place) {
 Place placeFrom(std::string_view text) {
     std::size_t count = 0;
     const auto [latitude, longitude, hours] = numbersOf(text, count);
-    const Place place{latitude, longitude, kHour * (count == 3 ? hours : std::round(longitude / 15.0))};
+    Place place{latitude, longitude, kHour * (count == 3 ? hours : std::round(longitude / 15.0))};
     checkPlace(place);
     return place;
 }

@@ -144,6 +144,7 @@ Weather simulatedYear(const Place& place, std::uint64_t seed) {
     // Each has its own memory: spells of warmth last days, gusts hours.
     Moods moods{wander(dice, 80.0), wander(dice, 10.0), wander(dice, 24.0), wander(dice, 14.0), wander(dice, 40.0)};
     std::vector<WeatherHour> hours;
+    hours.reserve(kHoursOfYear);
     for (int k = 0; k < kHoursOfYear; ++k) hours.push_back(hourOf(place, k, moods, fronts));
     return {kBeginOf2026 - place.utcOffset, std::move(hours), true};
 }

@@ -168,6 +168,7 @@ void keepThoseTogether(ImportState& state, std::vector<Piece>& pieces) {
 
 Dataset warped(const std::vector<Piece>& pieces, ToolWords words, const Progress* progress) {
     std::vector<GDALDatasetH> sources;
+    sources.reserve(pieces.size());
     for (const Piece& piece : pieces) sources.push_back(piece.heights.get());
     GDALWarpAppOptions* options = GDALWarpAppOptionsNew(words.list(), nullptr);
     if (progress != nullptr) GDALWarpAppOptionsSetProgress(options, onProgress, const_cast<Progress*>(progress));

@@ -246,6 +246,7 @@ private:
     }
     [[nodiscard]] std::vector<glm::dvec2> placesOf(const std::vector<glm::dvec2>& points) const {
         std::vector<glm::dvec2> places;
+        places.reserve(points.size());
         for (const glm::dvec2& p : points) places.push_back(placeOf(p));
         return places;
     }

@@ -35,6 +35,11 @@ constexpr int kSolvedBetween = 4; // poses from which on it is solved after each
 constexpr double kMetresPerUnit = 0.001;
 constexpr double kTable = 0.2; // metres around the origin, where the lab tells the truth
 
+QString openingTitle(CaptureWay way) {
+    return way == CaptureWay::lab ? CalibrationService::tr("Setting up the lab")
+                                  : CalibrationService::tr("Opening the camera");
+}
+
 /// What came of reading or solving: a refusal is a result too.
 template <class Result> using OrFinding = std::variant<Result, Finding>;
 
@@ -109,7 +114,11 @@ CalibrationService::CalibrationService(Settings& settings, StudioDocument& docum
     connect(liveTimer_, &QTimer::timeout, this, [this] { look(); });
     connect(&jobs, &Jobs::progressed, this, [this, &jobs](int id) {
         for (const Jobs::Status& status : jobs.running())
-            if (status.id == id && status.place == kPlace && state_.work != CalibrationState::Work::none) {
+            if (status.id == id && status.title == openingTitle(state_.setup.way) && !bench_) {
+                live_.words =
+                    openingTitle(state_.setup.way) + QString(", %1 %").arg(100.0 * status.fraction, 0, 'f', 0);
+                emit liveChanged();
+            } else if (status.id == id && status.place == kPlace && state_.work != CalibrationState::Work::none) {
                 state_.fraction = status.fraction;
                 state_.stage = status.stage;
                 if (!state_.stage.isEmpty()) state_.stage[0] = state_.stage[0].toUpper();
@@ -146,17 +155,46 @@ void CalibrationService::setSetup(const CalibrationSetup& setup) {
         CalibrationSetup same = setup;
         same.poses = state_.setup.poses;
         same.saved = state_.setup.saved;
+        same.board.spacing = state_.setup.board.spacing;
+        same.board.marker = state_.setup.board.marker;
         return same == state_.setup &&
                (setup.poses == same.poses || (setup.poses > same.poses && setup.way != CaptureWay::lab));
     }();
     const bool isElsewhere = setup.saved != state_.setup.saved;
+    const bool isOtherBoard = setup.board != state_.setup.board;
+    const bool isUnread = state_.poses.empty() || (setup.way == CaptureWay::folder && !isReadWhole_);
+    const bool isAnew = !onlyMore || (isOtherBoard && isUnread);
+    if (!isAnew && isOtherBoard) setSpacing(setup.board.spacing);
     state_.setup = setup;
     keepSetup(settings_, setup);
-    if (!onlyMore)
+    if (isAnew)
         beginAnew();
     else if (isElsewhere && (!state_.savedIn.empty() || state_.unsaved > 0))
         savePoses();
+    if (!isAnew && isOtherBoard) {
+        if (setup.way == CaptureWay::camera) { // it was opened with the board
+            bench_ = nullptr;
+            isLooking_ = false;
+            if (active_) openBench();
+        }
+        if (state_.counting() >= kFewestPoses && problemOf(setup).isEmpty()) solve();
+        look();
+    }
     emit changed();
+}
+
+/// The board's corners lie farther apart, or less far; where they were seen stays. The lab's board stays as it is, as a
+/// printed one does.
+void CalibrationService::setSpacing(double spacing) {
+    cancel();
+    clearResults();
+    const double scale = spacing / state_.setup.board.spacing;
+    for (CalibrationPose& pose : state_.poses) {
+        if (!pose.seen) continue;
+        ViewObservations seen = *pose.seen;
+        for (cv::Point3d& point : seen.corners.board) point *= scale;
+        pose.seen = std::make_shared<const ViewObservations>(std::move(seen));
+    }
 }
 
 void CalibrationService::beginAnew() {
@@ -182,6 +220,7 @@ void CalibrationService::forgetPoses() {
     store_ = std::make_shared<PoseStore>(state_.setup.way == CaptureWay::lab);
     state_.poses.clear();
     passedOver_.clear();
+    isReadWhole_ = false;
     state_.savedIn.clear();
     state_.unsaved = 0;
 }
@@ -190,6 +229,11 @@ void CalibrationService::clearResults() {
     state_.result = nullptr;
     state_.isImported = false;
     state_.isResultInRoom = false;
+    withdrawVerdicts();
+}
+
+/// What was said of the poses so far, before there are others; the result stays until there is a better one.
+void CalibrationService::withdrawVerdicts() {
     question_.withdraw();
     state_.askedBeside.clear();
     state_.refusal.reset();
@@ -289,13 +333,13 @@ void CalibrationService::poll() {
     emit changed();
 }
 
-void CalibrationService::read() {
+void CalibrationService::read(bool anew) {
     cancel();
     clearResults();
-    std::vector<std::string> without;
-    for (const CalibrationPose& pose : state_.poses)
-        if (pose.leftOut) without.push_back(pose.name);
-    std::erase_if(state_.poses, [](const CalibrationPose& pose) { return !pose.leftOut; });
+    isReadWhole_ = false;
+    std::erase_if(state_.poses, [&](const CalibrationPose& pose) { return !pose.leftOut && (anew || !pose.seen); });
+    std::vector<std::string> without; // left out, or read before
+    for (const CalibrationPose& pose : state_.poses) without.push_back(pose.name);
     state_.work = CalibrationState::Work::reading;
     state_.stage = tr("Looking for images");
     mailbox_ = std::make_shared<Mailbox>();
@@ -304,6 +348,7 @@ void CalibrationService::read() {
         std::vector<CapturedView>& views = listing.views;
         std::erase_if(views, [&](const CapturedView& view) { return std::ranges::count(without, view.name) > 0; });
         const CaptureOrder order = orderOf(setup);
+        if (views.empty() && !without.empty()) return OrFinding<ReadCapture>(ReadCapture{{}, {}, listing.passedOver});
         return orFinding<ReadCapture>([&]() -> OrFinding<ReadCapture> {
             try {
                 ReadCapture capture = readPoses(
@@ -336,13 +381,30 @@ void CalibrationService::read() {
                 emit changed();
                 return;
             }
-            camera_ = std::get<ReadCapture>(read).camera;
-            passedOver_ = std::move(std::get<ReadCapture>(read).warnings); // the poses have their own
-            std::erase_if(passedOver_, [](const Finding& one) { return one.cause != Cause::passedOver; });
-            solve();
+            takeRead(std::get<ReadCapture>(std::move(read)));
         },
         [this](const std::exception& error) { setTrouble(error); });
     emit changed();
+}
+
+void CalibrationService::takeRead(ReadCapture capture) {
+    isReadWhole_ = true;
+    passedOver_ = std::move(capture.warnings); // the poses have their own
+    std::erase_if(passedOver_, [](const Finding& one) { return one.cause != Cause::passedOver; });
+    // Some may have been read before the others.
+    camera_ = {};
+    for (const CalibrationPose& pose : state_.poses) {
+        if (!pose.counts()) continue;
+        const cv::Size size(pose.pictures->camera.width(), pose.pictures->camera.height());
+        if (!camera_.empty() && size != camera_) {
+            state_.refusal = Finding{Cause::imageSize, pose.name, "", "its images have another size than those before",
+                                     "give images of one camera with one setting"};
+            emit changed();
+            return;
+        }
+        camera_ = size;
+    }
+    solve();
 }
 
 void CalibrationService::openBench() {
@@ -367,10 +429,10 @@ void CalibrationService::openBench() {
             return setTrouble(error);
         }
     }
-    live_.words = setup.way == CaptureWay::lab ? tr("The lab is being set up") : tr("The camera is being opened");
+    live_.words = openingTitle(setup.way);
     const int attempt = ++benchTry_;
     jobs_.runWith<std::shared_ptr<CaptureBench>>(
-        "open", kPlace, setup.way == CaptureWay::lab ? tr("Setting up the lab") : tr("Opening the camera"),
+        "open", kPlace, openingTitle(setup.way),
         [setup, room, display, open = openCamera_](const Progress& progress) {
             return setup.way == CaptureWay::lab ? openLabBench(setup, *room, progress)
                                                 : openCameraBench(setup, open, display, progress);
@@ -391,35 +453,51 @@ void CalibrationService::look() {
     if (!active_ || !bench_ || isLooking_ || state_.work == CalibrationState::Work::capturing) return;
     isLooking_ = true;
     const int pose = state_.counting();
-    looker_->look(
-        [this, bench = bench_, board = state_.setup.board, pose, wanted = wanted()](const Progress& progress) {
-            LiveSight sight;
-            std::string trouble;
-            try {
-                const std::scoped_lock lock(bench->mutex);
-                const cv::Mat picture = bench->look(progress);
-                sight.camera = {picture.cols, picture.rows};
-                sight.picture = pictureOfMat(picture);
-                sight.corners = liveCorners(picture, board);
-                bench->setWanted(wanted ? std::optional(wanted->cameraFromBoard) : std::nullopt);
-                for (const cv::Point2d& point : wanted ? wanted->outline : bench->ghost(pose))
-                    sight.ghost.emplace_back(point.x, point.y);
-            } catch (const std::exception& error) {
-                trouble = error.what();
-            }
-            QMetaObject::invokeMethod(
-                this,
-                [this, bench, sight = std::move(sight), trouble = std::move(trouble)]() mutable {
-                    takeSight(bench, std::move(sight), trouble);
-                },
-                Qt::QueuedConnection);
-        });
+    looker_->look([this, bench = bench_, board = state_.setup.board, pose, wanted = wanted(),
+                   lit = lit()](const Progress& progress) {
+        LiveSight sight;
+        std::string trouble;
+        try {
+            const std::scoped_lock lock(bench->mutex);
+            const cv::Mat picture = bench->look(progress);
+            sight.camera = {picture.cols, picture.rows};
+            sight.picture = pictureOfMat(picture);
+            sight.corners = liveCorners(picture, board);
+            bench->setWanted(wanted ? std::optional(wanted->cameraFromBoard) : std::nullopt, board.spacing);
+            for (const cv::Point2d& point : wanted ? wanted->outline : bench->ghost(pose, lit))
+                sight.ghost.emplace_back(point.x, point.y);
+        } catch (const std::exception& error) {
+            trouble = error.what();
+        }
+        QMetaObject::invokeMethod(
+            this,
+            [this, bench, sight = std::move(sight), trouble = std::move(trouble)]() mutable {
+                takeSight(bench, std::move(sight), trouble);
+            },
+            Qt::QueuedConnection);
+    });
 }
 
 /// The pose that would help most, once enough is known to tell; the first poses follow a plan.
 std::optional<NextPose> CalibrationService::wanted() const {
     if (!state_.result || state_.isImported || state_.setup.way == CaptureWay::folder) return std::nullopt;
     return state_.result->next;
+}
+
+/// Where the projector's light was seen so far.
+cv::Rect CalibrationService::lit() const {
+    cv::Rect all;
+    for (const CalibrationPose& pose : state_.poses)
+        if (pose.counts() && pose.pictures) all |= pose.pictures->lit;
+    return all;
+}
+
+/// Of the first pose that is not there.
+int CalibrationService::freeNumber() const {
+    int number = 0;
+    const auto isThere = [&](const CalibrationPose& pose) { return pose.name == nameOfPose(number); };
+    while (std::ranges::any_of(state_.poses, isThere)) ++number;
+    return number;
 }
 
 void CalibrationService::takeSight(const std::shared_ptr<CaptureBench>& from, LiveSight sight,
@@ -452,19 +530,25 @@ void CalibrationService::photograph() {
     const auto helpful = wanted();
     cancel();
     rest_ = rest;
-    clearResults();
-    std::erase_if(state_.poses, [](const CalibrationPose& pose) { return pose.refusal.has_value(); });
+    const std::string contradicted = state_.refusal ? state_.refusal->view : std::string();
+    std::erase_if(state_.poses, [&](const CalibrationPose& pose) {
+        return pose.refusal.has_value() || (!contradicted.empty() && pose.name == contradicted);
+    });
+    if (state_.isImported || !contradicted.empty())
+        clearResults();
+    else
+        withdrawVerdicts();
     if (!bench_) return openBench();
     state_.work = CalibrationState::Work::capturing;
     state_.stage = tr("Waiting for the camera");
     mailbox_ = std::make_shared<Mailbox>();
-    const int number = static_cast<int>(state_.poses.size());
+    const int number = freeNumber();
     const auto room = document_.state().installation;
     const glm::ivec2 size = room->projectors.at(projector()).camera.size;
     const auto work = [bench = bench_, store = store_, setup = state_.setup, number, size, helpful,
                        box = mailbox_](const Progress& progress) -> TakenPose {
         const std::scoped_lock lock(bench->mutex);
-        bench->setWanted(helpful ? std::optional(helpful->cameraFromBoard) : std::nullopt);
+        bench->setWanted(helpful ? std::optional(helpful->cameraFromBoard) : std::nullopt, setup.board.spacing);
         const auto onShot = [&](const Shot& shot) {
             const std::scoped_lock boxLock(box->mutex);
             box->shot = shot.image;
@@ -568,7 +652,7 @@ void CalibrationService::savePoses() {
 
 void CalibrationService::solve() {
     jobs_.stop("solve");
-    clearResults();
+    withdrawVerdicts();
     ReadCapture capture;
     capture.views = countingViews(state_);
     capture.camera = camera_;
@@ -576,6 +660,7 @@ void CalibrationService::solve() {
     for (const CalibrationPose& pose : state_.poses)
         if (pose.counts()) addWarnings(pose.warnings, capture.warnings);
     if (capture.views.size() < static_cast<std::size_t>(kFewestPoses)) {
+        clearResults();
         state_.refusal = Finding{Cause::tooFewViews, "", "",
                                  std::to_string(capture.views.size()) + " poses count, but three are needed",
                                  "add poses of the board, tilted differently; six are good"};
@@ -614,6 +699,7 @@ void CalibrationService::solve() {
         "solve", kPlace, tr("Working out camera and projector"), work,
         [this](OrFinding<Result> solved) {
             endWork();
+            clearResults();
             if (const auto* finding = std::get_if<Finding>(&solved)) {
                 state_.refusal = *finding;
             } else {
@@ -637,9 +723,9 @@ void CalibrationService::setLeftOut(const std::string& pose, bool leftOut) {
     }
     for (const CalibrationPose& one : state_.poses)
         if (state_.flatPose.empty() && one.counts()) state_.flatPose = one.name;
-    // Of a folder, reading ended at the first refusal.
-    if (state_.setup.way == CaptureWay::folder)
-        read();
+    // Of a folder, reading ended at the first refusal, and what was left out then was not read.
+    if (state_.setup.way == CaptureWay::folder && (!isReadWhole_ || (!leftOut && !found->seen)))
+        read(false);
     else if (state_.counting() >= kFewestPoses)
         solve();
     emit changed();
@@ -739,7 +825,11 @@ void CalibrationService::exportTo(const std::filesystem::path& file) {
 void CalibrationService::reportTo(const std::filesystem::path& file, std::vector<ReportPicture> pictures) {
     CalibrationReport report;
     report.pictures = std::move(pictures);
-    if (state_.result) report.record = recordOf(*state_.result);
+    if (state_.result) {
+        report.record = recordOf(*state_.result);
+        report.millimetres = state_.result->millimetres();
+        if (state_.result->plan && std::isfinite(state_.result->plan->worst)) report.where = "where the device stands";
+    }
     report.refusal = state_.refusal;
     for (const CalibrationPose& pose : state_.poses) {
         if (pose.refusal && !pose.leftOut && !report.refusal) report.refusal = pose.refusal;

@@ -23,6 +23,10 @@
 
 class QTimer;
 
+namespace lumorph {
+struct ReadCapture;
+}
+
 namespace lumorph::studio {
 
 class CaptureBench;
@@ -60,7 +64,8 @@ public:
 
     /// In sight or not: only then the camera is looked through.
     void setActive(bool active);
-    /// Another way, board, folder ...: poses that were made with other ones go.
+    /// Another way, board, folder ...: poses that were made with other ones go. Of the board's spacing only what is
+    /// said has changed: it is solved again.
     void setSetup(const CalibrationSetup& setup);
     void setWay(CaptureWay way);
 
@@ -99,11 +104,15 @@ private:
     [[nodiscard]] static SavedPoses saveTo(const std::filesystem::path& parent, PoseStore& store,
                                            std::shared_ptr<const CapturedPose> pose, const Progress& progress);
     class Looker;
-    void read();
+    /// Images of a folder; of poses that were read already only where it is read `anew`.
+    void read(bool anew = true);
+    void takeRead(ReadCapture capture);
+    void setSpacing(double spacing);
     void openBench();
     void look();
     void takeSight(const std::shared_ptr<CaptureBench>& from, LiveSight sight, const std::string& trouble);
     void clearResults();
+    void withdrawVerdicts();
     void poll();
     void endWork();
     void takePose(CalibrationPose pose);
@@ -117,6 +126,8 @@ private:
     [[nodiscard]] RoomPlacement placement() const;
     [[nodiscard]] std::optional<BoardPoints> flatPoints() const;
     [[nodiscard]] std::optional<NextPose> wanted() const;
+    [[nodiscard]] cv::Rect lit() const;
+    [[nodiscard]] int freeNumber() const;
 
     Settings& settings_;
     StudioDocument& document_;
@@ -142,6 +153,7 @@ private:
     int benchTry_ = 0;                ///< counts, so that a bench that comes too late is not taken
     cv::Size camera_;                 ///< of the poses
     std::vector<Finding> passedOver_; ///< what lies beside the poses in their folder
+    bool isReadWhole_ = false;        ///< the folder; else reading ended at a refusal
     std::unique_ptr<Looker> looker_;  ///< last: it refers to the rest
 };
 

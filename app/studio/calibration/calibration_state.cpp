@@ -508,14 +508,19 @@ NextStep nextOf(const CalibrationState& state) {
                 tr("Connect a camera that sees the table, and choose it at the left."),
                 {}};
     const bool wantsMore = !isFolder && state.counting() < state.setup.poses;
-    if (state.result && (!wantsMore || state.isUsed())) return solvedNext(state);
+    const bool isOld = state.result && state.result->solved.views.size() != static_cast<std::size_t>(state.counting());
+    if (state.result && (!wantsMore || state.isUsed()) && !(isOld && !wantsMore)) return solvedNext(state);
     if (isFolder && state.poses.empty())
         return {Do::read, Tone::quiet, tr("Say which board and projector, then read the images"),
                 tr("What is set at the left must be what was photographed: count the board's inner corners and measure "
                    "one square."),
                 tr("Read the images")};
     if (wantsMore) return photographNext(state);
-    return {Do::solve, Tone::quiet, tr("All poses are there"), {}, tr("Work out camera and projector")};
+    return {Do::solve,
+            Tone::quiet,
+            isOld ? tr("A pose is not in the result yet") : tr("All poses are there"),
+            {},
+            tr("Work out camera and projector")};
 }
 
 FindingWords wordsOf(const Finding& finding) {

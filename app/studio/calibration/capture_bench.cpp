@@ -21,10 +21,9 @@ namespace {
 constexpr int kLabSpare = 6; // poses beyond those that are wanted
 constexpr int kLabCameraWidth = 1280;
 constexpr std::uint32_t kLabSeed = 20;
-constexpr double kGuideFocal = 1.3; // of the picture's width, while nothing is known
+constexpr double kGuideFocal = 1.3;  // of the picture's width, while nothing is known
+constexpr double kGuideAspect = 1.6; // of a usual picture, for which the outlines were drawn
 constexpr double kRadians = std::numbers::pi / 180.0;
-
-std::string poseName(int pose) { return "pose_" + std::to_string(pose + 1); }
 
 cv::Mat whiteOf(cv::Size size) { return {size, CV_8U, cv::Scalar(255)}; }
 
@@ -48,9 +47,10 @@ private:
 
 class LabBench final : public CaptureBench {
 public:
-    LabBench(const CalibrationSetup& setup, const Installation& room)
+    LabBench(const CalibrationSetup& setup, const Installation& room, const Progress& progress)
         : setup_(setup), truth_(labTruth(room, setup.installed)), lab_(truth_, setup.board, {}, kLabSeed),
-          camera_(lab_, clock_), display_(openLabDisplay(lab_)), poses_(lab_.proposePoses(setup.poses + kLabSpare)) {
+          camera_(lab_, clock_), display_(openLabDisplay(lab_)),
+          poses_(lab_.proposePoses(setup.poses + kLabSpare, progress.part(0.1, 0.9))) {
         if (!setup.fault) return;
         LabCapture capture;
         capture.room = truth_;
@@ -79,7 +79,7 @@ public:
             capturer_ = std::make_unique<PoseCapture>(camera_, *display_, std::move(settings));
         }
         onShot_ = onShot;
-        CapturedPose captured = capturer_->capture(poseName(pose), progress);
+        CapturedPose captured = capturer_->capture(nameOfPose(pose), progress);
         onShot_ = nullptr;
         return captured;
     }
@@ -92,7 +92,7 @@ public:
     }
     [[nodiscard]] bool isLive() const override { return false; }
 
-    [[nodiscard]] BoardOutline ghost(int pose) const override {
+    [[nodiscard]] BoardOutline ghost(int pose, const cv::Rect& /*lit*/) const override {
         BoardOutline outline;
         for (const cv::Point3d& corner : cornersOf(setup_.board)) {
             const double metres = lab_.options().metresPerUnit;
@@ -103,7 +103,7 @@ public:
         return outline;
     }
     [[nodiscard]] const Installation* truth() const override { return &truth_; }
-    void setWanted(const std::optional<PoseVector>& cameraFromBoard) override {
+    void setWanted(const std::optional<PoseVector>& cameraFromBoard, double spacing) override {
         wanted_.reset();
         if (!cameraFromBoard) return;
         const PoseVector& pose = *cameraFromBoard;
@@ -112,7 +112,9 @@ public:
         glm::dmat4 matrix(1.0);
         for (int row = 0; row < 3; ++row) {
             for (int column = 0; column < 3; ++column) matrix[column][row] = turn(row, column);
-            matrix[3][row] = lab_.options().metresPerUnit * pose[3 + static_cast<std::size_t>(row)];
+            // The lab's board is as large as it was printed, whatever is said of it later.
+            matrix[3][row] =
+                lab_.options().metresPerUnit * setup_.board.spacing / spacing * pose[3 + static_cast<std::size_t>(row)];
         }
         wanted_ = glm::inverse(lab_.camera().cameraFromWorld) * matrix;
     }
@@ -122,7 +124,7 @@ private:
                                              const Progress& progress) {
         ++faultyPoses_;
         CapturedPose captured;
-        captured.name = poseName(pose);
+        captured.name = nameOfPose(pose);
         const std::vector<LabShot> shots = faulty_->takeNext(progress);
         const glm::ivec2 size = lab_.projector().camera.size;
         ShotCheck check(parsePattern(setup_.pattern, {size.x, size.y}), captured.name, setup_.board);
@@ -175,7 +177,7 @@ public:
             capturer_ = std::make_unique<PoseCapture>(*camera_, *display_, std::move(settings));
         }
         onShot_ = onShot;
-        CapturedPose captured = capturer_->capture(poseName(pose), progress);
+        CapturedPose captured = capturer_->capture(nameOfPose(pose), progress);
         onShot_ = nullptr;
         isLit_ = false;
         return captured;
@@ -189,9 +191,10 @@ public:
         return picture;
     }
     [[nodiscard]] bool isLive() const override { return camera_->isLive(); }
-    [[nodiscard]] BoardOutline ghost(int pose) const override {
+    [[nodiscard]] BoardOutline ghost(int pose, const cv::Rect& lit) const override {
         const cv::Size size = size_.empty() ? camera_->size() : size_;
-        return size.empty() ? BoardOutline{} : guideOutline(setup_.board, size, kGuideFocal * size.width, pose);
+        if (size.empty()) return {};
+        return guideOutline(setup_.board, lit.empty() ? cv::Rect({}, size) : lit, kGuideFocal * size.width, pose);
     }
     [[nodiscard]] std::vector<std::string> automatics() const override { return camera_->automatics(); }
 
@@ -207,6 +210,8 @@ private:
 
 } // namespace
 
+std::string nameOfPose(int pose) { return "pose_" + std::to_string(pose + 1); }
+
 std::vector<cv::Point3d> cornersOf(const CalibrationBoard& board) {
     const std::vector<cv::Point3d> points = pointsOf(board);
     double right = 0.0, bottom = 0.0;
@@ -214,11 +219,11 @@ std::vector<cv::Point3d> cornersOf(const CalibrationBoard& board) {
     return {{0.0, 0.0, 0.0}, {right, 0.0, 0.0}, {right, bottom, 0.0}, {0.0, bottom, 0.0}};
 }
 
-BoardOutline guideOutline(const CalibrationBoard& board, cv::Size camera, double focal, int pose) {
+BoardOutline guideOutline(const CalibrationBoard& board, const cv::Rect& area, double focal, int pose) {
     struct Guide {
         double aboutX, aboutY, aboutZ; // degrees
-        double x, y;                   // of its middle, shares of the picture from its middle
-        double width;                  // share of the picture's
+        double x, y;                   // of its middle, shares of the area from its middle
+        double width;                  // share of the area's
     };
     static constexpr std::array kGuides{Guide{0, 0, 0, 0, 0, 0.5},
                                         Guide{32, 0, 0, 0, -0.12, 0.5},
@@ -232,7 +237,9 @@ BoardOutline guideOutline(const CalibrationBoard& board, cv::Size camera, double
     const Guide& guide = kGuides[static_cast<std::size_t>(pose) % kGuides.size()];
     std::vector<cv::Point3d> corners = cornersOf(board);
     const cv::Point3d far = corners[2];
-    const double distance = focal * far.x / (guide.width * camera.width);
+    // A lit area may be high and narrow, or low and wide.
+    const double widest = std::min<double>(area.width, kGuideAspect * area.height);
+    const double distance = focal * far.x / (guide.width * widest);
     cv::Mat about[3];
     cv::Rodrigues(cv::Vec3d(guide.aboutX * kRadians, 0, 0), about[0]);
     cv::Rodrigues(cv::Vec3d(0, guide.aboutY * kRadians, 0), about[1]);
@@ -242,8 +249,8 @@ BoardOutline guideOutline(const CalibrationBoard& board, cv::Size camera, double
     for (const cv::Point3d& corner : corners) {
         const cv::Vec3d point =
             turn * cv::Vec3d(corner.x - 0.5 * far.x, corner.y - 0.5 * far.y, 0.0) + cv::Vec3d(0, 0, distance);
-        outline.emplace_back((0.5 + guide.x) * camera.width + focal * point[0] / point[2],
-                             (0.5 + guide.y) * camera.height + focal * point[1] / point[2]);
+        outline.emplace_back(area.x + (0.5 + guide.x) * area.width + focal * point[0] / point[2],
+                             area.y + (0.5 + guide.y) * area.height + focal * point[1] / point[2]);
     }
     return outline;
 }
@@ -251,7 +258,7 @@ BoardOutline guideOutline(const CalibrationBoard& board, cv::Size camera, double
 std::shared_ptr<CaptureBench> openLabBench(const CalibrationSetup& setup, const Installation& room,
                                            const Progress& progress) {
     progress.report(0.1, "setting up the lab");
-    return std::make_shared<LabBench>(setup, room);
+    return std::make_shared<LabBench>(setup, room, progress);
 }
 
 std::shared_ptr<CaptureBench> openCameraBench(const CalibrationSetup& setup, const CameraOpener& open,

@@ -16,6 +16,9 @@
 
 namespace lumorph::studio {
 
+/// "pose_1" is that of number 0.
+[[nodiscard]] std::string nameOfPose(int pose);
+
 /// The outline of a board in the camera's picture: its corners in turn, camera pixels.
 using BoardOutline = std::vector<cv::Point2d>;
 
@@ -31,10 +34,12 @@ public:
     [[nodiscard]] virtual cv::Mat look(const Progress& progress) = 0;
     /// Whether `look` sees other things by itself.
     [[nodiscard]] virtual bool isLive() const = 0;
-    /// Where the board should be for the pose of this number.
-    [[nodiscard]] virtual BoardOutline ghost(int pose) const = 0;
-    /// From now on this pose (the camera from the board, its unit) is the one to take next; nothing: as planned.
-    virtual void setWanted(const std::optional<PoseVector>& cameraFromBoard) { static_cast<void>(cameraFromBoard); }
+    /// Where the board should be for the pose of this number. `lit`: where in the camera's picture the projector's
+    /// light was seen; empty: not known.
+    [[nodiscard]] virtual BoardOutline ghost(int pose, const cv::Rect& lit) const = 0;
+    /// From now on this pose (the camera from the board) is the one to take next; nothing: as planned. `spacing`: of
+    /// the board, as it is said now, in the unit of the pose.
+    virtual void setWanted(const std::optional<PoseVector>& /*cameraFromBoard*/, double /*spacing*/) {}
     /// Automatics of the camera that are still on, and what to do about them.
     [[nodiscard]] virtual std::vector<std::string> automatics() const { return {}; }
     /// Camera and projector as they truly are; null where nobody knows.
@@ -53,9 +58,9 @@ public:
                                                             std::shared_ptr<PatternDisplay> display,
                                                             const Progress& progress = {});
 
-/// Outlines of poses that together tell a camera well: flat first, then tilted to all sides and spread over the
-/// picture, as a camera of that focal length (pixels) would see them.
-[[nodiscard]] BoardOutline guideOutline(const CalibrationBoard& board, cv::Size camera, double focal, int pose);
+/// Outlines of poses that together tell a camera well: flat first, then tilted to all sides and spread over `area` of
+/// the picture, in which they lie whole; as a camera of that focal length (pixels) would see them.
+[[nodiscard]] BoardOutline guideOutline(const CalibrationBoard& board, const cv::Rect& area, double focal, int pose);
 
 /// The four corners of the area that the board's points span, in the board's frame.
 [[nodiscard]] std::vector<cv::Point3d> cornersOf(const CalibrationBoard& board);

@@ -61,67 +61,79 @@ std::optional<std::size_t> missingFile(const ChainState& state, std::size_t link
     return count > 0 ? std::nullopt : std::optional(count);
 }
 
-ChainStep stepOf(const ChainState& state) {
+namespace {
+
+ChainStep ownStepOf(const ChainState& state) {
     using What = ChainStep::Do;
-    using Tone = ChainStep::Tone;
     const ChainLink& link = chainLinks()[state.chosen];
     const CalibrationSession& session = state.session;
     const StageStand& stand = session.stands()[state.chosen];
     const std::optional<std::size_t> running = session.running();
     if (state.live && running == state.chosen)
-        return {What::cancel, state.live->trouble.isEmpty() ? Tone::live : Tone::warning, state.live->title,
+        return {What::cancel, state.live->trouble.isEmpty() ? StepTone::live : StepTone::warning, state.live->title,
                 state.live->trouble.isEmpty() ? QObject::tr("Step %1 of %2; each is noticed by itself.")
                                                     .arg(state.live->step + 1)
                                                     .arg(state.live->steps)
                                               : state.live->trouble,
                 QObject::tr("Cancel")};
     if (running == state.chosen)
-        return {What::cancel, Tone::live, QObject::tr("Measuring: %1").arg(link.title), state.stage,
+        return {What::cancel, StepTone::live, QObject::tr("Measuring: %1").arg(link.title), state.stage,
                 QObject::tr("Cancel")};
     if (running)
-        return {What::cancel, Tone::live, QObject::tr("Measuring: %1").arg(chainLinks()[*running].title),
+        return {What::cancel, StepTone::live, QObject::tr("Measuring: %1").arg(chainLinks()[*running].title),
                 QObject::tr("This one can be measured after it."), QObject::tr("Cancel")};
     if (const auto trouble = session.troubles().find(state.chosen); trouble != session.troubles().end())
-        return {What::measure, Tone::failure, QObject::tr("It could not be measured"),
+        return {What::measure, StepTone::failure, QObject::tr("It could not be measured"),
                 QString::fromStdString(trouble->second), QObject::tr("Measure again")};
     if (const StageOutcome* measured = session.outcomeAt(state.chosen)) {
         const StageOutcome& outcome = *measured;
         const QString summary = wordsOf(outcome).summary;
         if (!outcome.isGood && !outcome.changesRoom)
-            return {What::measure, Tone::failure, QObject::tr("This is not to be trusted"), summary,
+            return {What::measure, StepTone::failure, QObject::tr("This is not to be trusted"), summary,
                     QObject::tr("Measure again")};
         if (!outcome.isUsed && !session.asked().empty()) {
             const SimulatedQuestionWords words = wordsOfQuestion(session.asked());
-            return {What::use, Tone::warning, words.title, words.text, words.button};
+            return {What::use, StepTone::warning, words.title, words.text, words.button};
         }
         if (!outcome.isUsed)
-            return {What::use, outcome.isGood ? Tone::good : Tone::warning,
+            return {What::use, outcome.isGood ? StepTone::good : StepTone::warning,
                     !outcome.isGood       ? QObject::tr("Something has changed")
                     : outcome.isSimulated ? QObject::tr("Simulated")
                                           : QObject::tr("Measured"),
                     summary, QObject::tr("Use it")};
-        return {What::goOn, Tone::good, QObject::tr("In use"), summary,
+        return {What::goOn, StepTone::good, QObject::tr("In use"), summary,
                 session.next() ? QObject::tr("Go on") : QString()};
     }
     const QString again = QObject::tr("Measure again");
     const QString words = wordsOf(stand);
     switch (stand.how) {
     case StageStand::How::waits:
-        return {What::goOn, Tone::quiet, QObject::tr("Its turn comes later"),
+        return {What::goOn, StepTone::quiet, QObject::tr("Its turn comes later"),
                 QObject::tr("%1 What it builds on is measured first.").arg(link.purpose), QObject::tr("What is next?")};
     case StageStand::How::spare:
-        return measuringStep(state, Tone::quiet, link.title,
+        return measuringStep(state, StepTone::quiet, link.title,
                              words.isEmpty() ? link.purpose : words.left(1).toUpper() + words.mid(1) + ".",
                              QObject::tr("Measure in the lab"));
     case StageStand::How::measured:
-        return measuringStep(state, Tone::good, QObject::tr("Measured"), words, again);
+        return measuringStep(state, StepTone::good, QObject::tr("Measured"), words, again);
     case StageStand::How::simulated:
-        return measuringStep(state, Tone::good, QObject::tr("Simulated"), words, again);
+        return measuringStep(state, StepTone::good, QObject::tr("Simulated"), words, again);
     case StageStand::How::stale:
-        return measuringStep(state, Tone::warning, QObject::tr("To be measured again"), words + ".", again);
+        return measuringStep(state, StepTone::warning, QObject::tr("To be measured again"), words + ".", again);
     default:
-        return measuringStep(state, Tone::live, link.title, link.purpose, QObject::tr("Measure in the lab"));
+        return measuringStep(state, StepTone::live, link.title, link.purpose, QObject::tr("Measure in the lab"));
     }
+}
+
+} // namespace
+
+ChainStep stepOf(const ChainState& state) {
+    ChainStep step = ownStepOf(state);
+    if (state.restEnded != state.chosen || state.session.running()) return step;
+    const QString ended = state.session.next() ? QObject::tr("Measuring all that is missing stopped here.")
+                                               : QObject::tr("All that was missing is measured.");
+    step.text = step.text.isEmpty() ? ended : ended + ' ' + step.text;
+    return step;
 }
 
 ChainService::ChainService(StudioDocument& document, StudioLoop& loop, LabRoom& lab, Jobs& jobs, Notices& notices,
@@ -176,6 +188,7 @@ void ChainService::setWay(LinkWay way) {
     if (way == state_.way) return;
     if (state_.live) cancel();
     state_.session.endRest();
+    state_.restEnded.reset();
     state_.way = way;
     for (std::size_t link = 0; link < chainLinks().size(); ++link) state_.session.forget(link);
     emit changed();
@@ -209,11 +222,13 @@ void ChainService::doNext() {
 
 void ChainService::measure() {
     state_.session.endRest();
+    state_.restEnded.reset();
     begin(state_.chosen);
 }
 
 void ChainService::measureRest() {
     state_.session.measureRest();
+    state_.restEnded.reset();
     goOn();
 }
 
@@ -226,7 +241,13 @@ void ChainService::goOn() {
         return state_.way == LinkWay::live;
     };
     if (const auto turn = state_.session.nextOfRest(waitsForUser)) return begin(*turn);
+    endRestAt(state_.chosen);
     emit changed();
+}
+
+void ChainService::endRestAt(std::size_t link) {
+    state_.session.endRest();
+    state_.restEnded = link;
 }
 
 /// Null where it cannot be measured now.
@@ -302,6 +323,7 @@ void ChainService::beginOnTable(std::size_t link) {
 
 void ChainService::fail(std::size_t link, const std::exception& error) {
     const bool isCancelled = dynamic_cast<const Cancelled*>(&error) != nullptr;
+    if (state_.session.goesOn() && !isCancelled) endRestAt(link);
     state_.session.fail(link, isCancelled ? std::string() : wordsOfError(error).toStdString());
     emit changed();
 }
@@ -320,15 +342,15 @@ void ChainService::run(std::size_t link, std::function<StageOutcome(const Progre
 }
 
 void ChainService::take(std::size_t link, StageOutcome outcome) {
+    const bool isOfRest = state_.session.goesOn();
     const auto doubted = state_.session.take(link, std::move(outcome), *document_.state().installation);
     if (doubted)
         document_.change(QObject::tr("Pointer tip in doubt"), [&doubted](StudioState& state) {
             state.installation = std::make_shared<const Installation>(*doubted);
         });
+    if (isOfRest && state_.session.goesOn() && useOf(link)) return goOn();
+    if (isOfRest) endRestAt(link);
     emit changed();
-    if (!state_.session.goesOn()) return;
-    if (useOf(link)) return goOn();
-    state_.session.endRest();
 }
 
 void ChainService::use() {

@@ -33,6 +33,7 @@ struct ChainState {
     /// chosen yet.
     std::map<std::size_t, std::vector<std::filesystem::path>> files;
     std::map<std::size_t, std::filesystem::path> kept; ///< folders of recordings, by links
+    std::optional<std::size_t> restEnded;              ///< the link at which measuring all that is missing has ended
 };
 
 /// How a link is measured now.
@@ -95,6 +96,7 @@ private:
     void take(std::size_t link, StageOutcome outcome);
     bool useOf(std::size_t link);
     void goOn();
+    void endRestAt(std::size_t link);
     void follow();
 
     StudioDocument& document_;

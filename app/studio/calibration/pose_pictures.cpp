@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include <QColor>
 #include <opencv2/imgproc.hpp>
@@ -41,6 +42,25 @@ QImage coordinatePicture(const cv::Mat1f& coordinate, const cv::Mat1f& confidenc
     return picture;
 }
 
+/// Around the known pixels but the outermost: stray ones lie anywhere.
+cv::Rect litArea(const cv::Mat1f& confidence) {
+    constexpr double kStray = 0.02; // of the pixels, at each side
+    cv::Mat known;
+    cv::compare(confidence, 0.0, known, cv::CMP_GT);
+    const auto between = [&](int axis) {
+        cv::Mat counts; // of the known, a column or a row each
+        cv::reduce(known / 255, counts, axis, cv::REDUCE_SUM, CV_64F);
+        const double stray = kStray * cv::sum(counts)[0];
+        int first = 0, last = static_cast<int>(counts.total()) - 1;
+        for (double sum = 0.0; first < last && (sum += counts.at<double>(first)) <= stray;) ++first;
+        for (double sum = 0.0; last > first && (sum += counts.at<double>(last)) <= stray;) --last;
+        return std::pair(first, last);
+    };
+    const auto [left, right] = between(0);
+    const auto [top, bottom] = between(1);
+    return right > left && bottom > top ? cv::Rect(left, top, right - left + 1, bottom - top + 1) : cv::Rect();
+}
+
 QImage greyPicture(const cv::Mat1b& grey) {
     QImage picture(grey.cols, grey.rows, QImage::Format_Grayscale8);
     for (int y = 0; y < grey.rows; ++y) std::copy_n(grey.ptr(y), grey.cols, picture.scanLine(y));
@@ -67,6 +87,7 @@ PosePictures picturesOf(const DecodedView& decoded, cv::Size projector) {
     PosePictures pictures;
     pictures.camera = {decoded.white.cols, decoded.white.rows};
     const cv::Size shown = shownSize(decoded.white.size());
+    pictures.lit = litArea(decoded.confidence);
     pictures.grey = decoded.white;
     pictures.white = pictureOfMat(decoded.white);
     pictures.columns = coordinatePicture(decoded.column, decoded.confidence, projector.width, shown);

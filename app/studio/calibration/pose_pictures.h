@@ -10,6 +10,7 @@ namespace lumorph::studio {
 /// A pose as pictures to look at; at most 960 pixels wide, all of one size.
 struct PosePictures {
     QSize camera;         ///< pixels of the camera's picture, in which points are told
+    cv::Rect lit;         ///< of those, around where the projector's light was seen; empty: nowhere
     cv::Mat grey;         ///< under white light, as it was taken, 8-bit
     QImage white;         ///< the same
     QImage columns, rows; ///< the projector's coordinates in colours, with a line every 64 projector pixels

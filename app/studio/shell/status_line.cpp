@@ -51,6 +51,27 @@ QWidget* makePatternChip(ProjectorOutputs& outputs, QWidget* parent) {
     return chip;
 }
 
+/// While the running show is watched: what the watch says, and a click leads to the check.
+QWidget* makeWatchChip(Studio& studio, QWidget* parent) {
+    auto* chip = new QPushButton(parent);
+    chip->setObjectName("status.watch");
+    chip->setProperty("look", "status");
+    const auto show = [chip, &studio] {
+        const WatchStand& stand = studio.watch.stand();
+        chip->setVisible(!stand.words.isEmpty());
+        const bool isAlarm = stand.how == WatchStand::How::alarm;
+        chip->setIcon(icon(isAlarm ? "warning" : "eye", isAlarm ? IconRole::warning : IconRole::muted));
+        chip->setText(stand.words);
+        chip->setToolTip(QString::fromStdString(stand.sentence) + (isAlarm ? "\nClick to check the room." : ""));
+    };
+    QObject::connect(&studio.watch, &WatchBoard::changed, chip, show);
+    QObject::connect(chip, &QPushButton::clicked, &studio.commands, [&studio] {
+        if (QAction* check = studio.commands.find("calibrate.chain.check")) check->trigger();
+    });
+    show();
+    return chip;
+}
+
 /// While another studio runs: a click says again what this means.
 QWidget* makeSecondChip(Studio& studio, QWidget* parent) {
     auto* chip = new QPushButton(icon("lock", IconRole::warning), "Second window", parent);
@@ -87,6 +108,8 @@ StatusLine::StatusLine(Studio& studio, QWidget* parent)
     loop_->setMinimumWidth(64);
     row->addStretch(1);
     row->addWidget(makeSecondChip(studio, this));
+    row->addSpacing(16);
+    row->addWidget(makeWatchChip(studio, this));
     row->addSpacing(16);
     row->addWidget(makePatternChip(studio.outputs, this));
     row->addSpacing(16);

@@ -10,6 +10,7 @@
 #include "app/studio/base/settings.h"
 #include "app/studio/base/studio_home.h"
 #include "app/studio/calibration/lab_room.h"
+#include "app/studio/calibration/watch_stand.h"
 #include "app/studio/devices/device_service.h"
 #include "app/studio/devices/gamepad_service.h"
 #include "app/studio/devices/tracker_service.h"
@@ -55,6 +56,7 @@ struct Studio {
     SoundService sound{settings, loop};
     GamepadService gamepads{loop};
     KeepsakeKeeper keepsakes{loop, notices};
+    WatchBoard watch;
     /// Cameras that calibrate, by their addresses, in any thread; empty: those of this machine.
     std::function<std::unique_ptr<CaptureCamera>(const std::string& address)> openCamera;
 };

@@ -88,11 +88,33 @@ struct BudgetBasis {
     RoomErrors errors;
 };
 
+/// The part that is most of the sum, since squares are added; null where none is.
+const BudgetItem* mostOf(const ErrorBudget& budget) {
+    constexpr double kMost = 0.5;
+    const auto most = std::ranges::max_element(budget.items, {}, &BudgetItem::share);
+    return most->share > kMost ? &*most : nullptr;
+}
+
+/// "Left by prediction: 99 % of it."
+QString shareWords(const BudgetItem& item) {
+    return QObject::tr("%1: %2 % of it.").arg(partName(item.part)).arg(100.0 * item.share, 0, 'f', 0);
+}
+
+/// Where measuring again helps little.
+StepCardText cardWithoutAdvice(const BudgetItem* most) {
+    const QString little = QObject::tr("Measuring a single one again would make the whole hardly smaller.");
+    if (!most) return {StepTone::good, QObject::tr("No part stands out"), little, {}};
+    const QString slower = QObject::tr("It falls where the hand goes more slowly, and where the time from tracker to "
+                                       "light is shorter.");
+    return {StepTone::good, shareWords(*most), most->part == BudgetPart::prediction ? slower : little, {}};
+}
+
 /// The advised link, as the card over the budget says it.
-StepCardText cardOf(const BudgetAdvice& advice, std::size_t link, bool isTrackerPlaced) {
+StepCardText cardOf(const BudgetAdvice& advice, std::size_t link, bool isTrackerPlaced, const BudgetItem* most) {
     const QString title = chainLinks()[link].title.toLower();
     QString text =
-        QObject::tr("It takes the %1 down to about %2.").arg(wholeText(advice.before), wholeText(advice.after));
+        QObject::tr("It takes the whole %1 down to about %2.").arg(wholeText(advice.before), wholeText(advice.after));
+    if (most) text = shareWords(*most) + ' ' + text;
     if (!isTrackerPlaced)
         text += ' ' + QObject::tr("So far nobody has said where the tracker's world lies: its part counts as if that "
                                   "were laid in by a ruler.");
@@ -259,13 +281,9 @@ private:
                 .arg(wholeText(budget.cutMetres)));
         const auto best =
             std::ranges::find_if(budget.advice, [](const BudgetAdvice& one) { return linkOf(one.part).has_value(); });
-        if (best == budget.advice.end())
-            return card_->show({StepTone::good,
-                                tr("No part stands out"),
-                                tr("Measuring a single one again would make the whole hardly smaller."),
-                                {}});
+        if (best == budget.advice.end()) return card_->show(cardWithoutAdvice(mostOf(budget)));
         advised_ = linkOf(best->part);
-        card_->show(cardOf(*best, *advised_, budget.isTrackerPlaced));
+        card_->show(cardOf(*best, *advised_, budget.isTrackerPlaced, mostOf(budget)));
     }
 
     /// While there is no budget: why.

@@ -2,7 +2,6 @@
 
 #include <QApplication>
 #include <QDate>
-#include <QFileDialog>
 
 #include "app/workspaces/calibrate/error_map_view.h"
 #include "app/workspaces/common/export_dialogs.h"
@@ -24,7 +23,7 @@ QAction* addCalibrateAction(const CalibrateParts& parts, const char* id, const Q
 
 void askExport(const CalibrateParts& parts) {
     askFile(QApplication::activeWindow(), parts.studio.settings, "calibrate.export", "Export the calibration",
-            "calibration.json", {{"Lumorph's calibration (JSON)", "json"}, {"OpenCV (YAML)", "yaml"}},
+            "calibration", {{"Lumorph's calibration (JSON)", "json"}, {"OpenCV (YAML)", "yaml"}},
             [parts](const QString& file) { parts.service.exportTo(file.toStdString()); });
 }
 
@@ -43,30 +42,17 @@ std::vector<ReportPicture> mapOf(const CalibrateParts& parts) {
 
 void askReport(const CalibrateParts& parts) {
     askFile(QApplication::activeWindow(), parts.studio.settings, "calibrate.report", "Write a report",
-            "calibration-report.pdf", {{"PDF", "pdf"}, {"Web page (HTML)", "html"}},
+            "calibration-report", {{"PDF", "pdf"}, {"Web page (HTML)", "html"}},
             [parts](const QString& file) { parts.service.reportTo(file.toStdString(), mapOf(parts)); });
 }
 
-void askToRead(const QString& name, const QString& title, const QString& filter,
-               const std::function<void(const std::filesystem::path&)>& chosen) {
-    auto* dialog = new QFileDialog(QApplication::activeWindow(), title);
-    dialog->setObjectName(name);
-    dialog->setOption(QFileDialog::DontUseNativeDialog);
-    dialog->setAttribute(Qt::WA_DeleteOnClose);
-    dialog->setFileMode(QFileDialog::ExistingFile);
-    dialog->setNameFilter(filter);
-    QObject::connect(dialog, &QFileDialog::fileSelected, dialog,
-                     [chosen](const QString& file) { chosen(file.toStdString()); });
-    dialog->open();
-}
-
 void askImport(const CalibrateParts& parts) {
-    askToRead("calibrate.import.file", "Import a calibration",
-              "Calibrations (*.json *.yaml *.yml *.xml *.txt *.JSON *.YAML *.YML *.XML)",
-              [parts](const std::filesystem::path& file) {
-                  parts.selection.setWhole(false); // where its figures and its button are
-                  parts.service.importFrom(file);
-              });
+    askFileToOpen(QApplication::activeWindow(), parts.studio.settings, "calibrate.import", "Import a calibration",
+                  "Calibrations (*.json *.yaml *.yml *.xml *.txt *.JSON *.YAML *.YML *.XML)",
+                  [parts](const QString& file) {
+                      parts.selection.setWhole(false); // where its figures and its button are
+                      parts.service.importFrom(file.toStdString());
+                  });
 }
 
 void doNextOfCalibration(const CalibrateParts& parts) {
@@ -125,37 +111,34 @@ void askForImages(const CalibrateParts& parts) {
 }
 
 void askForOrder(const CalibrateParts& parts) {
-    askToRead("calibrate.order.file", "What each image shows: one line an image", "Order files (*.txt);;All files (*)",
-              [parts](const std::filesystem::path& file) {
-                  CalibrationSetup setup = parts.service.state().setup;
-                  setup.order = file;
-                  parts.service.setSetup(setup);
-              });
+    askFileToOpen(QApplication::activeWindow(), parts.studio.settings, "calibrate.order",
+                  "What each image shows: one line an image", "Order files (*.txt);;All files (*)",
+                  [parts](const QString& file) {
+                      CalibrationSetup setup = parts.service.state().setup;
+                      setup.order = file.toStdString();
+                      parts.service.setSetup(setup);
+                  });
 }
 
 void askForRecording(const CalibrateParts& parts, std::size_t link, std::size_t file) {
     if (file == chainLinks()[link].files.size())
-        return askToRead("chain.recording.file", "The description in a recording's folder",
-                         "Recordings (recording.json)", [parts, link, file](const std::filesystem::path& path) {
-                             parts.chain.setFile(link, file, path.parent_path());
-                         });
+        return askFileToOpen(QApplication::activeWindow(), parts.studio.settings, "chain.recording",
+                             "The description in a recording's folder", "Recordings (recording.json)",
+                             [parts, link, file](const QString& path) {
+                                 parts.chain.setFile(link, file,
+                                                     std::filesystem::path(path.toStdString()).parent_path());
+                             });
     const LinkFile& wanted = chainLinks()[link].files[file];
-    askToRead("chain.recording.file", wanted.title + ": " + wanted.words, "Recordings (*.csv *.txt);;All files (*)",
-              [parts, link, file](const std::filesystem::path& path) { parts.chain.setFile(link, file, path); });
+    askFileToOpen(QApplication::activeWindow(), parts.studio.settings, "chain.recording",
+                  wanted.title + ": " + wanted.words, "Recordings (*.csv *.txt);;All files (*)",
+                  [parts, link, file](const QString& path) { parts.chain.setFile(link, file, path.toStdString()); });
 }
 
 void askToKeepRecording(const CalibrateParts& parts, std::size_t link) {
-    auto* dialog = new QFileDialog(QApplication::activeWindow(), "A new folder for the recording");
-    dialog->setObjectName("chain.keep.folder");
-    dialog->setOption(QFileDialog::DontUseNativeDialog);
-    dialog->setAttribute(Qt::WA_DeleteOnClose);
-    dialog->setAcceptMode(QFileDialog::AcceptSave);
-    dialog->setFileMode(QFileDialog::AnyFile);
-    dialog->setLabelText(QFileDialog::Accept, "Keep");
-    dialog->selectFile(QString("%1-%2").arg(chainLinks()[link].key, QDate::currentDate().toString(Qt::ISODate)));
-    QObject::connect(dialog, &QFileDialog::fileSelected, dialog,
-                     [parts, link](const QString& folder) { parts.chain.keepRecording(link, folder.toStdString()); });
-    dialog->open();
+    askNewFolder(
+        QApplication::activeWindow(), parts.studio.settings, "chain.keep", "A new folder for the recording",
+        QString("%1-%2").arg(chainLinks()[link].key, QDate::currentDate().toString(Qt::ISODate)),
+        [parts, link](const QString& folder) { parts.chain.keepRecording(link, folder.toStdString()); }, "Keep");
 }
 
 void askForSaved(const CalibrateParts& parts) {

@@ -231,7 +231,7 @@ private:
         for (const CalibrationPose& pose : state.poses)
             if (pose.counts()) marks.coverage.push_back(hullOf(*pose.seen));
         const bool wantsMore = state.counting() < state.setup.poses && state.work == CalibrationState::Work::none;
-        if (wantsMore) {
+        if (wantsMore || offersAnother(state)) {
             for (const QPointF& point : live.ghost) marks.ghost << point;
             marks.ghostText = QString("Pose %1").arg(state.counting() + 1);
         }

@@ -125,9 +125,36 @@ void CalibrateWorkspace::addWatchCommand() {
     });
     followWatch();
     connect(watchAction_, &QAction::toggled, this, [this](bool on) {
-        if (!watch_) watch_ = makeWatch();
+        if (!watch_) {
+            watch_ = makeWatch();
+            connect(watch_.get(), &DriftService::changed, this, [this] { tellWatch(); });
+        }
         watch_->setWatching(on);
     });
+}
+
+/// In the status line; the gravest first.
+void CalibrateWorkspace::tellWatch() {
+    const DriftReport& drift = watch_->drift();
+    const OutputReport& output = watch_->output();
+    WatchStand stand;
+    if (!watch_->isWatching())
+        stand = {};
+    else if (output.state == OutputReport::State::black)
+        stand = {"Watch: a projector is dark", output.sentence, WatchStand::How::alarm};
+    else if (output.state == OutputReport::State::frozen)
+        stand = {"Watch: the picture is frozen", output.sentence, WatchStand::How::alarm};
+    else if (drift.state == DriftReport::State::moved)
+        stand = {"Watch: something has moved", drift.sentence, WatchStand::How::alarm};
+    else if (output.state == OutputReport::State::blind)
+        stand = {"Watch: cannot tell", output.sentence, WatchStand::How::unsure};
+    else if (drift.state == DriftReport::State::blind)
+        stand = {"Watch: light comes, its place is unknown", drift.sentence, WatchStand::How::unsure};
+    else if (drift.state == DriftReport::State::good)
+        stand = {"Watch: all in place", drift.sentence, WatchStand::How::good};
+    else
+        stand = {"Watch: looking", "It has not seen enough yet.", WatchStand::How::unsure};
+    studio_.watch.set(std::move(stand));
 }
 
 /// Why the running show cannot be watched; empty: it can. As long as the lab is packed its truth is what is believed,

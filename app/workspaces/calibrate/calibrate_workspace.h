@@ -41,6 +41,7 @@ private:
     [[nodiscard]] std::unique_ptr<DriftService> makeWatch();
     [[nodiscard]] QString watchObstacle() const;
     void followWatch();
+    void tellWatch();
     [[nodiscard]] QWidget* makeSwitched(QWidget* single, QWidget* whole);
     Studio& studio_;
     CalibrationService service_;

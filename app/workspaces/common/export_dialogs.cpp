@@ -36,6 +36,16 @@ QFileDialog* makeFileDialog(QWidget* parent, Settings& settings, const QString& 
     return dialog;
 }
 
+/// The folder of what is chosen is where the next one begins.
+void openFor(QFileDialog* dialog, Settings& settings, std::function<void(const QString&)> chosen) {
+    QObject::connect(dialog, &QFileDialog::fileSelected, dialog,
+                     [&settings, chosen = std::move(chosen)](const QString& file) {
+                         settings.setValue(kFolderKey, QFileInfo(file).absolutePath());
+                         chosen(file);
+                     });
+    dialog->open();
+}
+
 /// A window of one column with a title, what is asked, and "accept" and "Cancel".
 struct Asking {
     QDialog* dialog = nullptr;
@@ -98,12 +108,25 @@ void askFile(QWidget* parent, Settings& settings, const QString& id, const QStri
         const QString base = typed.isEmpty() ? name : QFileInfo(typed.front()).completeBaseName();
         dialog->selectFile(base + "." + suffix);
     });
-    QObject::connect(dialog, &QFileDialog::fileSelected, dialog,
-                     [&settings, chosen = std::move(chosen)](const QString& file) {
-                         settings.setValue(kFolderKey, QFileInfo(file).absolutePath());
-                         chosen(file);
-                     });
-    dialog->open();
+    openFor(dialog, settings, std::move(chosen));
+}
+
+void askFileToOpen(QWidget* parent, Settings& settings, const QString& id, const QString& title, const QString& filter,
+                   std::function<void(const QString&)> chosen) {
+    QFileDialog* dialog = makeFileDialog(parent, settings, id, title);
+    dialog->setFileMode(QFileDialog::ExistingFile);
+    dialog->setNameFilter(filter);
+    openFor(dialog, settings, std::move(chosen));
+}
+
+void askNewFolder(QWidget* parent, Settings& settings, const QString& id, const QString& title, const QString& name,
+                  std::function<void(const QString&)> chosen, const QString& accept) {
+    QFileDialog* dialog = makeFileDialog(parent, settings, id, title);
+    dialog->setAcceptMode(QFileDialog::AcceptSave);
+    dialog->setFileMode(QFileDialog::AnyFile);
+    dialog->setLabelText(QFileDialog::Accept, accept);
+    dialog->selectFile(name);
+    openFor(dialog, settings, std::move(chosen));
 }
 
 void askFolder(QWidget* parent, Settings& settings, const QString& id, const QString& title,

@@ -13,8 +13,8 @@
 
 namespace lumorph::studio {
 
-/// The small windows that exports ask with. All are modal to the window only, so that the loop goes on behind them, and
-/// hand over what was chosen when they are accepted.
+/// The small windows that exports and imports ask with. All are modal to the window only, so that the loop goes on
+/// behind them, and hand over what was chosen when they are accepted.
 
 /// One kind of file in a file dialog.
 struct SaveKind {
@@ -22,8 +22,15 @@ struct SaveKind {
     QString suffix; ///< "obj"
 };
 /// Asks where to save; asks again before it replaces a file. `id` names the dialog; the folder used last is kept.
+/// `name` is without an ending: that follows the kind.
 void askFile(QWidget* parent, Settings& settings, const QString& id, const QString& title, const QString& name,
              const std::vector<SaveKind>& kinds, std::function<void(const QString&)> chosen);
+/// Asks for a file that is there. `filter`: "Calibrations (*.json *.yaml)".
+void askFileToOpen(QWidget* parent, Settings& settings, const QString& id, const QString& title, const QString& filter,
+                   std::function<void(const QString&)> chosen);
+/// Asks for a folder that is to be made. `accept`: of the button.
+void askNewFolder(QWidget* parent, Settings& settings, const QString& id, const QString& title, const QString& name,
+                  std::function<void(const QString&)> chosen, const QString& accept);
 /// Asks for a folder that is there. `accept`: of the button; empty: "Export here".
 void askFolder(QWidget* parent, Settings& settings, const QString& id, const QString& title,
                std::function<void(const QString&)> chosen, const QString& accept = {});

@@ -35,7 +35,7 @@ MarkerBoard usualBoard(const TrackerService& trackers) {
 
 void writeBoard(Studio& studio) {
     askFile(QApplication::activeWindow(), studio.settings, "tracker.board", "Write a marker board to print",
-            "marker-board.pdf", {{"PDF of true size", "pdf"}}, [&studio](const QString& file) {
+            "marker-board", {{"PDF of true size", "pdf"}}, [&studio](const QString& file) {
                 try {
                     const std::string pdf = boardPdf(usualBoard(studio.trackers));
                     writeFileAtomically(file.toStdString(), std::as_bytes(std::span(pdf)));
