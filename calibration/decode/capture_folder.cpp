@@ -97,7 +97,10 @@ bool isNamedBefore(const std::filesystem::path& one, const std::filesystem::path
 
 std::vector<std::filesystem::path> imagesIn(const std::filesystem::path& folder) {
     std::vector<std::filesystem::path> images = entriesOf(folder);
-    std::erase_if(images, [](const auto& file) { return !isImageName(file) || std::filesystem::is_directory(file); });
+    std::erase_if(images, [](const auto& file) {
+        std::error_code ignored; // a link that leads nowhere is told when it is read
+        return !isImageName(file) || std::filesystem::is_directory(file, ignored);
+    });
     if (images.empty())
         throw DataError(folder.string(), "holds no picture that can be read",
                         "give the folder of the images: PNG, JPEG, BMP, TIFF, PGM or WebP");
@@ -156,14 +159,14 @@ CaptureListing listCapture(const std::filesystem::path& folder) {
     for (const std::filesystem::path& entry : entriesOf(folder)) {
         const std::string name = entry.filename().string();
         if (isHousekeeping(entry)) continue;
-        if (!std::filesystem::is_directory(entry)) {
+        std::error_code ignored;
+        if (!std::filesystem::is_directory(entry, ignored)) {
             if (isImageName(entry)) beside.push_back(entry);
             continue;
         }
         CapturedView view{name, {}};
         std::vector<std::filesystem::path> others;
         for (const std::filesystem::path& file : entriesOf(entry)) {
-            std::error_code ignored;
             if (isImageName(file) && !std::filesystem::is_directory(file, ignored))
                 view.files.push_back(file);
             else if (!isHousekeeping(file))

@@ -654,9 +654,10 @@ std::optional<Finding> causeInCamera(const std::vector<ViewObservations>& views,
     double plain = std::numeric_limits<double>::infinity();
     double least = plain;
     std::optional<Alternative> best;
+    const CaptureOrder nothing; // trials keep a reference
     for (const double share : kFocalStarts) {
         const ProcamCalibration start = cameraOfFocal(views, camera, share * std::max(camera.width, camera.height));
-        CauseTrials trials(views, start, {}, progress);
+        CauseTrials trials(views, start, nothing, progress);
         plain = std::min(plain, trials.before());
         for (const Alternative& by : trials.ofCamera()) {
             const double squares = (1.0 - by.explained) * trials.before();

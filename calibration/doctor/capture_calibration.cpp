@@ -355,7 +355,10 @@ ProcamCalibration calibrateCapture(const ReadCapture& capture, cv::Size projecto
         explain(distinct.views, order, result, progress.part(0.8, 1.0));
     } catch (const CaptureRefused& refused) {
         throwTrouble(capture, refused.finding());
-        if (hasPhases && fitsExchanged(distinct, projector))
+        // What one pose explains is no matter of the projector's size.
+        const Cause cause = refused.finding().cause;
+        const bool isOfPose = cause == Cause::cameraMoved || cause == Cause::cameraRefocused;
+        if (hasPhases && !isOfPose && fitsExchanged(distinct, projector))
             throw CaptureRefused({Cause::widthHeightSwapped, "", "",
                                   "the poses fit a projector of " + std::to_string(projector.height) + " x " +
                                       std::to_string(projector.width) + ", not of " + std::to_string(projector.width) +

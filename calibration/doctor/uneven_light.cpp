@@ -385,7 +385,11 @@ SteadiedImages steadied(const std::vector<cv::Mat>& images, const CaptureOrder& 
     const std::vector<double> gains = gainsIn(samples);
     const auto [least, most] = std::ranges::minmax(gains);
     if (!(least > 0.0) || most > kMostGain * least) return all;
-    for (std::size_t i = 0; i < images.size(); ++i) images[i].convertTo(all.images[i], CV_8U, 1.0 / gains[i]);
+    for (std::size_t i = 0; i < images.size(); ++i) {
+        cv::Mat steady; // its own, for a copied Mat shares its pixels
+        images[i].convertTo(steady, CV_8U, 1.0 / gains[i]);
+        all.images[i] = steady;
+    }
     all.change = most / least - 1.0;
     return all;
 }

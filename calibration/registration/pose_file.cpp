@@ -55,20 +55,61 @@ template <typename Row> void forEachRow(std::string_view text, const std::string
     }
 }
 
-/// What stands between the separators of a line: blanks and one comma or semicolon; beside semicolons a comma is a part
-/// of a number. What ends with a separator has nothing behind it.
+std::optional<double> numberOf(std::string_view field) {
+    std::array<char, 64> text{};
+    if (field.starts_with('+')) field.remove_prefix(1);
+    if (field.empty() || field.size() > text.size()) return std::nullopt;
+    std::size_t commas = 0;
+    for (std::size_t i = 0; i < field.size(); ++i) {
+        text[i] = field[i] == ',' ? '.' : field[i];
+        commas += field[i] == ',' ? 1 : 0;
+    }
+    double value = 0.0;
+    const auto [next, error] = std::from_chars(text.data(), text.data() + field.size(), value);
+    const bool whole = error == std::errc() && next == text.data() + field.size();
+    return whole && commas < 2 && std::isfinite(value) ? std::optional(value) : std::nullopt;
+}
+
+/// Adds one field; several where numbers stand in it with blanks between, as in "1, 2 3".
+void addField(std::vector<std::string_view>& fields, std::string_view field) {
+    const std::size_t before = fields.size();
+    for (std::string_view rest = field; !rest.empty();) {
+        const std::size_t end = rest.find_first_of(" \t");
+        if (end == std::string_view::npos && rest.size() == field.size()) break;
+        if (!numberOf(rest.substr(0, end))) break;
+        fields.push_back(rest.substr(0, end));
+        if (end == std::string_view::npos) return;
+        rest = trimmed(rest.substr(end));
+    }
+    fields.resize(before);
+    fields.push_back(field);
+}
+
+/// Whether each comma stands between two digits, as that of a decimal number does.
+bool areDecimal(std::string_view line) {
+    for (std::size_t at = line.find(','); at != std::string_view::npos; at = line.find(',', at + 1)) {
+        const auto isDigit = [&](std::size_t i) { return i < line.size() && line[i] >= '0' && line[i] <= '9'; };
+        if (at == 0 || !isDigit(at - 1) || !isDigit(at + 1)) return false;
+    }
+    return true;
+}
+
+/// What stands between the separators of a line: semicolons, else commas, else blanks. Beside semicolons, and beside
+/// tabs where all of them may be so, a comma is a part of a number. What ends with a separator has nothing behind it.
 void splitInto(std::vector<std::string_view>& fields, std::string_view line) {
     fields.clear();
-    const bool bySemicolons = line.find(';') != std::string_view::npos;
-    const std::string_view separators = bySemicolons ? ";" : line.find(',') == std::string_view::npos ? "" : ",";
-    const std::string ends = std::string(separators) + " \t";
+    std::string_view separators;
+    if (line.find(';') != std::string_view::npos)
+        separators = ";";
+    else if (line.find(',') != std::string_view::npos)
+        separators = line.find('\t') != std::string_view::npos && areDecimal(line) ? "\t" : ",";
+    const std::string_view ends = separators.empty() ? " \t" : separators;
     for (line = trimmed(line); !line.empty();) {
         const std::size_t quote = line.front() == '"' ? line.find('"', 1) : 0;
         const std::size_t end = line.find_first_of(ends, quote == std::string_view::npos ? 0 : quote);
-        fields.push_back(withoutQuotes(line.substr(0, end)));
+        addField(fields, withoutQuotes(trimmed(line.substr(0, end))));
         if (end == std::string_view::npos) return;
-        line = trimmed(line.substr(end));
-        if (!line.empty() && separators.find(line.front()) != std::string_view::npos) line = trimmed(line.substr(1));
+        line = separators.empty() ? trimmed(line.substr(end)) : trimmed(line.substr(end + 1));
     }
 }
 
@@ -86,21 +127,6 @@ std::vector<std::string_view> namesOf(std::string_view line) {
     }
     splitInto(names, line);
     return names;
-}
-
-std::optional<double> numberOf(std::string_view field) {
-    std::array<char, 64> text{};
-    if (field.starts_with('+')) field.remove_prefix(1);
-    if (field.empty() || field.size() > text.size()) return std::nullopt;
-    std::size_t commas = 0;
-    for (std::size_t i = 0; i < field.size(); ++i) {
-        text[i] = field[i] == ',' ? '.' : field[i];
-        commas += field[i] == ',' ? 1 : 0;
-    }
-    double value = 0.0;
-    const auto [next, error] = std::from_chars(text.data(), text.data() + field.size(), value);
-    const bool whole = error == std::errc() && next == text.data() + field.size();
-    return whole && commas < 2 && std::isfinite(value) ? std::optional(value) : std::nullopt;
 }
 
 bool takeNumbers(std::span<const std::string_view> fields, std::span<double> numbers) {

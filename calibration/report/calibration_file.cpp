@@ -8,6 +8,7 @@
 #include "core/base/atomic_file.h"
 #include "core/base/error.h"
 #include "core/base/file.h"
+#include "core/base/plain_text.h"
 #include "core/base/text.h"
 
 namespace lumorph {
@@ -41,7 +42,8 @@ CalibrationRecord readCalibration(const std::filesystem::path& file, const Known
         throw InvalidInput("calibration file " + inQuotes(file.filename().string()),
                            "is none of .json, .yaml, .yml, .xml and .txt", "choose another file, or name it so");
     const std::vector<std::byte> bytes = readFile(file, kMostFileBytes);
-    const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+    const PlainText plain(bytes);
+    const std::string_view text = plain.view();
     // Ours says so; other programs write JSON too, and some put XML into a file of that name.
     const bool isObject = text.find('{') != std::string_view::npos && text.find('{') < text.find('<');
     const bool isForeign =

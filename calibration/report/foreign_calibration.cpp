@@ -214,18 +214,23 @@ private:
     }
 
     /// Of a node by its name, within one of `around`; nothing for the node of a further camera.
-    [[nodiscard]] static std::optional<Side> sideOf(const ForeignEntry& node, Side around, bool fromZero) {
+    [[nodiscard]] std::optional<Side> sideOf(const ForeignEntry& node, Side around, bool fromZero) const {
         const std::string loose = looseOf(node.key);
         if (loose.starts_with("proj") || loose == "beamer") return Side::projector;
         if (loose == "cam" || loose == "camera" || loose == "cameracalibration") return Side::camera;
         const std::optional<int> number = cameraNumber(node.key);
         if (!number) return around;
-        if (*number == (fromZero ? 0 : 1)) return Side::camera;
-        if (!fromZero) return *number == 2 ? std::optional(Side::projector) : std::nullopt;
+        if (!fromZero)
+            return *number == 1   ? std::optional(Side::camera)
+                   : *number == 2 ? std::optional(Side::projector)
+                                  : std::nullopt;
         // Kalibr knows cameras alone; a projector that was calibrated as one has a topic that says so.
         const ForeignEntry* topic = node.child("rostopic");
         const bool isProjector = topic != nullptr && lowerCase(topic->value).find("proj") != std::string::npos;
-        return isProjector ? std::optional(Side::projector) : std::nullopt;
+        // Each is placed by the one before it.
+        if (isProjector && *number != 1)
+            text_.refuse(node.line, "is the projector, which has to be the second of the chain, after its camera");
+        return *number == 0 ? std::optional(Side::camera) : isProjector ? std::optional(Side::projector) : std::nullopt;
     }
 
     /// Those of a list in brackets or of a matrix; 0 where something else stands there.
@@ -303,7 +308,8 @@ public:
         // OpenCV's own samples write dates as the machine's language has them.
         if (const std::string date = entries_.word(Role::date); isIsoDate(date)) record.source.date = date;
         record.source.board = entries_.word(Role::board);
-        record.source.isSimulated = numberOr(Role::simulated, 0.0, 0.0) != 0.0;
+        const std::string simulated = lowerCase(entries_.word(Role::simulated));
+        record.source.isSimulated = simulated == "true" || simulated == "yes" || simulated == "1";
         result.state.camera = result.camera.lens;
         result.state.projector = result.projector.lens;
         result.state.projectorFromCamera = result.projectorFromCamera;
@@ -489,8 +495,13 @@ private:
 
     /// 0, not known, where something else than one number stands there.
     double errorOf(Role role) const {
-        const bool isOne = entries_.has(role) && !isNothing(role) && text_.numbersOf(entries_.at(role)).size() == 1;
-        return isOne ? numberOr(role, 0.0, 0.0) : 0.0;
+        if (!entries_.has(role) || isNothing(role)) return 0.0;
+        try {
+            const std::vector<double> numbers = text_.numbersOf(entries_.at(role));
+            return numbers.size() == 1 && numbers[0] > 0.0 ? numbers[0] : 0.0;
+        } catch (const DataError&) { // "n/a"
+            return 0.0;
+        }
     }
 
     double numberOr(Role role, double otherwise, double least) const {

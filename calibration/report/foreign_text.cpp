@@ -372,7 +372,10 @@ private:
         }
         if (entry.children.empty()) entry.value = trimmedOf(text_.substr(begin, at_ - begin), kSpace);
         const std::size_t close = at_ + 2;
-        if (text_.substr(close, name.size()) != name) refuse("closes another element than " + inQuotes(name));
+        const std::string_view behind = text_.substr(std::min(text_.size(), close + name.size()), 1);
+        if (text_.substr(close, name.size()) != name ||
+            (behind != ">" && kSpace.find(behind) == std::string_view::npos))
+            refuse("closes another element than " + inQuotes(name));
         skipPast(">", "an element");
     }
 

@@ -287,7 +287,6 @@ std::string sourceText(const CalibrationSource& source) {
 std::string figuresText(const CalibrationReport& report) {
     const ProcamCalibration& result = report.record.result;
     std::string text = "<h2>Figures</h2>\n";
-    // With a length that is none it cannot be told in millimetres.
     const double unit = 1000.0 * report.record.source.metresPerUnit;
     const std::optional<double> onBoards = heldOutMillimetresOf(result);
     if (const auto within = report.millimetres ? report.millimetres : onBoards)

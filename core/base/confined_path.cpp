@@ -83,10 +83,11 @@ std::optional<fs::path> confinedPath(const fs::path& folder, const fs::path& rel
     const fs::path plain = relative.lexically_normal();
     auto target = followed(root, root / plain);
     if (!target || fs::exists(fs::symlink_status(*target, failed))) return target;
-    for (const fs::path& words : {plain, withSlashes(relative).lexically_normal()}) {
-        if (!staysInside(words)) return std::nullopt;
-        if (const auto like = likeSpelled(root, words)) return followed(root, *like);
-    }
+    if (const auto like = likeSpelled(root, plain)) return followed(root, *like);
+    const fs::path slashes = withSlashes(relative).lexically_normal();
+    if (slashes == plain) return target; // folders are not listed twice
+    if (!staysInside(slashes)) return std::nullopt;
+    if (const auto like = likeSpelled(root, slashes)) return followed(root, *like);
     return target;
 }
 

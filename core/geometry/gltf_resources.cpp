@@ -160,7 +160,7 @@ std::filesystem::path Folder::place(const std::string& uri, const std::string& p
     const auto target = confinedPath(*path_, percentDecoded(uri));
     if (!target) refuse(file, place + ": " + inQuotes(uri) + " leads out of the folder of the model", kKeepBeside);
     std::error_code failed;
-    if (std::filesystem::exists(*target, failed)) return *target;
+    if (std::filesystem::exists(*target, failed) || percentDecoded(uri) == uri) return *target;
     // A name with a percent sign that was not encoded.
     const auto asWritten = confinedPath(*path_, uri);
     return asWritten && std::filesystem::exists(*asWritten, failed) ? *asWritten : *target;

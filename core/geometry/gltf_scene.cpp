@@ -118,6 +118,10 @@ private:
                                        " change their shape; only one of them is read (EXT_mesh_gpu_instancing).");
             copies.resize(1);
         }
+        const Model::Node& shown = model_.nodes[at];
+        source_.accessors.budget().charge(
+            copies.size(), sizeof(Model::Node) + shown.name.size() + shown.weights.size() * sizeof(shown.weights[0]),
+            nodePlace(index));
         const int first = static_cast<int>(model_.nodes.size());
         for (Model::Node& copy : copies) {
             copy.name = model_.nodes[at].name;

@@ -184,6 +184,31 @@ TEST(ForeignCalibration, KalibrCamchainIsReadAndItsFurtherCamerasAreNamed) {
     const CalibrationRecord both = parseForeignCalibration(chain("/projector/image"), "camchain.yaml");
     EXPECT_EQ(both.source.metresPerUnit, 1.0);
     expectRig(inMillimetres(both).result, "Kalibr's metres");
+    // Each of a chain is placed by the one before it: a projector elsewhere would be put in a wrong place.
+    std::string first = chain("/cam1/image_raw");
+    first.replace(first.find("/cam0/"), 6, "/projector/");
+    std::string third = chain("/cam1/image_raw");
+    third += "cam2" + chain("/projector/image").substr(third.find("cam1") + 4);
+    for (const std::string& text : {first, third}) {
+        try {
+            (void)parseForeignCalibration(text, "camchain.yaml");
+            ADD_FAILURE() << text;
+        } catch (const DataError& error) {
+            EXPECT_THAT(error.what(), HasSubstr("second of the chain"));
+        }
+    }
+}
+
+TEST(ForeignCalibration, ErrorsThatAreNoNumbersAreUnknown) {
+    for (const char* rms : {".Nan", "n/a", "-1", "[0.1, 0.2]"})
+        for (const char* simulated : {"false", "0", "true"}) {
+            const CalibrationRecord record = parseForeignCalibration(
+                "image_width: 1280\nimage_height: 960\nrms: " + std::string(rms) + "\nsimulated: " + simulated +
+                    "\nK: [1180.5, 0, 642.25, 0, 1181, 478.75, 0, 0, 1]\nD: [0, 0, 0, 0, 0]\n",
+                "lens.yaml");
+            EXPECT_EQ(record.result.rms, 0.0) << rms;
+            EXPECT_EQ(record.source.isSimulated, std::string(simulated) == "true");
+        }
 }
 
 std::string refusedModel(const std::string& text) {
@@ -285,6 +310,7 @@ TEST(ForeignCalibration, CameraOfAProjectorNeedsNoSize) {
 TEST(ForeignCalibration, BrokenTextsAreRefusedWithTheirLine) {
     const std::pair<std::string, const char*> wrong[] = {
         {"<?xml version=\"1.0\"?>\n<a>\n<b>1</c></a>", "line 3: closes another element than 'b'"},
+        {"<?xml version=\"1.0\"?>\n<K>1 2</Kx>", "line 2: closes another element than 'K'"},
         {"<a>\n<b>", "ends within 'b'"},
         {"<!DOCTYPE a [<!ENTITY e \"x\">]>\n<a/>", "declares entities"},
         {"<a/>", "camera's matrix"},

@@ -47,6 +47,11 @@ TEST(PoseFile, FormatsOfOtherProgramsGiveTheSamePoses) {
         {"semicolons", "12.5;0.36;-1.25;2.5;0.2;-0.4;0.4;0.8\n12.52; 0.36; -1.25; 2.5; 0.2; -0.4; 0.4; 0.8;\n"},
         {"decimal commas",
          "Zeit;x;y;z;qx;qy;qz;qw\n12,5;0,36;-1,25;2,5;0,2;-0,4;0,4;0,8\n12,52;0,36;-1,25;2,5;0,2;-0,4;0,4;0,8\n"},
+        {"tabs and decimal commas",
+         "12,5\t0,36\t-1,25\t2,5\t0,2\t-0,4\t0,4\t0,8\n12,52\t0,36\t-1,25\t2,5\t0,2\t-0,4\t0,4\t0,8\n"},
+        {"commas and blanks", "12.5, 0.36 -1.25 2.5, 0.2 -0.4 0.4 0.8\n12.52 , 0.36 -1.25 2.5 , 0.2 -0.4 0.4 0.8\n"},
+        {"a body's name with blanks", "time,body,x,y,z,qx,qy,qz,qw\n12.5,Rigid Body 1,0.36,-1.25,2.5,0.2,-0.4,0.4,0.8\n"
+                                      "12.52,Rigid Body 1,0.36,-1.25,2.5,0.2,-0.4,0.4,0.8\n"},
         {"quotes and signs", "\"12.5\",\"+0.36\",\"-1.25\",\"2.5\",\"0.2\",\"-0.4\",\"0.4\",\"0.8\"\n12.52,0.36,-1.25,+"
                              "2.5,0.2,-0.4,0.4,0.8\n"},
         {"units by name",
@@ -157,8 +162,8 @@ TEST(PoseFile, StationsNeedNoTime) {
     EXPECT_EQ(bare[1].name, "2");
     expectPose({0.0, bare[0].pose}, 0.0, "bare");
     const std::vector<Station> named =
-        parseStations("left,0.36,-1.25,2.5,0.2,-0.4,0.4,0.8\nright,0,0,0,0,0,0,1\n", "a");
-    EXPECT_EQ(named[0].name, "left");
+        parseStations("left front,0.36,-1.25,2.5,0.2,-0.4,0.4,0.8\nright,0,0,0,0,0,0,1\n", "a");
+    EXPECT_EQ(named[0].name, "left front");
     expectPose({0.0, named[0].pose}, 0.0, "named");
     EXPECT_THROW((void)parseStations("a,0,0,0,0,0,0,1\na,0,0,0,0,0,0,1\n", "a"), DataError);
     EXPECT_THROW((void)parseStations("0,0,0,0,0,1\n", "a"), DataError);

@@ -4,6 +4,7 @@
 #include <random>
 
 #include <QAction>
+#include <QCheckBox>
 #include <QComboBox>
 #include <QJsonArray>
 #include <QJsonDocument>
@@ -236,17 +237,25 @@ TEST_F(Calibrate, AFolderWithAFaultIsRefusedByCausePlaceAndRemedy) {
         const CalibrationRecord record = w.written();
         return cv::norm(cv::Vec3d(&record.result.projectorFromCamera[3]));
     };
-    const QString withAll = focal();
+    const auto flat = [&] { return w.studio.find<QComboBox>("calibrate.flat")->currentText(); };
+    const QString withAll = focal(), first = flat(), headline = w.studio.text("calibrate.headline");
     const double apart = distance();
     auto* list = w.studio.find<QListWidget>("calibrate.poses.list");
-    list->setCurrentRow(1);
+    list->setCurrentRow(0);   // by itself the one that lay on the table
+    const auto toggle = [&] { // its words end long before its box does
+        auto* box = w.studio.find<QCheckBox>("calibrate.leaveOut");
+        QTest::mouseClick(box, Qt::LeftButton, Qt::NoModifier, {8, box->height() / 2});
+    };
     ASSERT_GE(chosen(), 0);
-    w.studio.click("calibrate.leaveOut");
+    toggle();
     ASSERT_TRUE(w.offers("Use this calibration")) << w.story();
     EXPECT_NE(focal(), withAll);
-    w.studio.click("calibrate.leaveOut");
+    EXPECT_NE(flat(), first);
+    toggle();
     ASSERT_TRUE(w.offers("Use this calibration")) << w.story();
     EXPECT_EQ(focal(), withAll) << "the same poses make the same result";
+    EXPECT_EQ(flat(), first);
+    EXPECT_EQ(w.studio.text("calibrate.headline"), headline);
     // A square that was measured wrongly: all lengths follow it, and nothing else changes.
     w.studio.enter("calibrate.board.spacing", "50");
     ASSERT_TRUE(w.offers("Use this calibration")) << w.story();
@@ -364,17 +373,66 @@ TEST_F(Calibrate, ImportedFileEndsWithAButtonThatUsesItAndSaysNoMoreThanTheFile)
     EXPECT_TRUE(w.offers("Photograph pose 1", 30s)) << w.story();
 }
 
+TEST(CalibrationQuestion, WhatMayBeSoIsAskedAndUsedWithAYes) {
+    studio::CalibrationState state;
+    state.setup.way = studio::CaptureWay::folder;
+    state.setup.folder = "/captures";
+    const auto asked = [&](const std::optional<Finding>& doubt) {
+        auto result = std::make_shared<studio::CalibrationResult>();
+        result->solved.projector.size = {1023, 768};
+        if (doubt) result->solved.warnings.push_back(*doubt);
+        state.result = std::move(result);
+        return studio::nextOf(state);
+    };
+    EXPECT_EQ(asked(std::nullopt).button, "Use this calibration");
+    const Finding size{Cause::projectorSize, "", "", "1023 x 768 is no usual size", "check the size"};
+    EXPECT_EQ(asked(size).title, "Has the projector 1023 × 768 pixels?");
+    EXPECT_EQ(asked(size).what, studio::NextStep::Do::use);
+    EXPECT_EQ(asked(size).button, "Yes, use this calibration");
+    EXPECT_TRUE(asked(size).text.contains("1023 x 768 is no usual size"));
+    const Finding length{Cause::unlikelyLength, "", "", "points of the board are 0.001 mm apart", "give millimetres"};
+    EXPECT_EQ(asked(length).title, "Are these lengths right?");
+}
+
+TEST(CalibrationPoses, AreSolvedAgainWhereTheResultLacksOneAndTheFreeNumberIsTaken) {
+    studio::CalibrationState state;
+    state.setup.poses = 4;
+    auto result = std::make_shared<studio::CalibrationResult>();
+    const auto seen = std::make_shared<const ViewObservations>();
+    for (int k = 0; k < 4; ++k) {
+        state.poses.push_back({studio::nameOfPose(k), nullptr, seen, {}, {}});
+        result->solved.views.emplace_back().name = studio::nameOfPose(k);
+    }
+    state.result = result;
+    EXPECT_EQ(studio::nextOf(state).what, studio::NextStep::Do::use);
+    EXPECT_EQ(studio::freeNumber(state), 4);
+    state.poses.push_back({studio::nameOfPose(4), nullptr, seen, {}, {}}); // and solving it was cancelled
+    EXPECT_EQ(studio::nextOf(state).what, studio::NextStep::Do::solve);
+    // One that all others contradict is taken again, and no other is replaced.
+    state.refusal = Finding{Cause::cameraMoved, "pose_3", "", "it moved", "take it again"};
+    EXPECT_EQ(studio::nextOf(state).what, studio::NextStep::Do::photographAgain);
+    EXPECT_EQ(studio::freeNumber(state), 2);
+    // Of a folder that was not read to its end.
+    state.refusal.reset();
+    state.result = nullptr;
+    state.setup.way = studio::CaptureWay::folder;
+    state.setup.folder = "/captures";
+    EXPECT_EQ(studio::nextOf(state).what, studio::NextStep::Do::read);
+    state.isReadWhole = true;
+    EXPECT_EQ(studio::nextOf(state).what, studio::NextStep::Do::solve);
+}
+
 TEST(BoardGuide, LiesInWhatTheProjectorLights) {
-    const CalibrationBoard board = parseCalibrationBoard(kBoard);
-    for (const cv::Rect lit : {cv::Rect(0, 0, 1280, 1024), cv::Rect(500, 300, 400, 250), cv::Rect(20, 40, 300, 900),
-                               cv::Rect(100, 700, 1100, 200)})
-        for (int pose = 0; pose < 9; ++pose)
-            for (const cv::Point2d& corner : studio::guideOutline(board, lit, 1600.0, pose)) {
-                EXPECT_GE(corner.x, lit.x) << pose << ", " << lit;
-                EXPECT_GE(corner.y, lit.y) << pose << ", " << lit;
-                EXPECT_LE(corner.x, lit.x + lit.width) << pose << ", " << lit;
-                EXPECT_LE(corner.y, lit.y + lit.height) << pose << ", " << lit;
-            }
+    for (const char* text : {kBoard, "chess:6x9:30", "circles:4x11:20"})
+        for (const cv::Rect lit : {cv::Rect(0, 0, 1280, 1024), cv::Rect(500, 300, 400, 250), cv::Rect(20, 40, 300, 900),
+                                   cv::Rect(100, 700, 1100, 200)})
+            for (int pose = 0; pose < 9; ++pose)
+                for (const cv::Point2d& corner : studio::guideOutline(parseCalibrationBoard(text), lit, 1600.0, pose)) {
+                    EXPECT_GE(corner.x, lit.x) << text << ", " << pose << ", " << lit;
+                    EXPECT_GE(corner.y, lit.y) << text << ", " << pose << ", " << lit;
+                    EXPECT_LE(corner.x, lit.x + lit.width) << text << ", " << pose << ", " << lit;
+                    EXPECT_LE(corner.y, lit.y + lit.height) << text << ", " << pose << ", " << lit;
+                }
 }
 
 TEST(PosePictures, KnowWhereLightWasSeenButForStrayPixels) {

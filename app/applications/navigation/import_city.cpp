@@ -107,7 +107,9 @@ std::optional<OGRSpatialReference> systemSaid(const std::string& text) {
     OGRSpatialReference system = systemOf(text);
     if (system.IsEmpty()) { // by its number alone, however it is written
         const std::size_t digits = text.find_last_not_of("0123456789") + 1;
-        if (digits < text.size() && text.size() - digits < 7) system = systemOf(std::stoi(text.substr(digits)));
+        const bool isEpsg = lowerCase(text).find("epsg") != std::string::npos;
+        if (isEpsg && digits < text.size() && text.size() - digits < 7)
+            system = systemOf(std::stoi(text.substr(digits)));
     }
     return system.IsEmpty() ? std::nullopt : std::optional(system);
 }

@@ -58,14 +58,16 @@ CPLHTTPResult* fetchNothing(const char*, CSLConstList, GDALProgressFunc, void*, 
     return result;
 }
 
-/// A file may name another one by an address: of a virtual raster's pieces, of its overviews in an .aux.xml.
+/// A file may name another one by an address: of a virtual raster's pieces, of its overviews in an .aux.xml. What is
+/// typed into the program is none either: it has no end.
 void closeNetwork() {
     VSIFilesystemPluginCallbacksStruct* nothing = VSIAllocFilesystemPluginCallbacksStruct();
     nothing->open = openNothing;
     nothing->stat = statNothing;
-    for (const char* prefix : {"/vsicurl/", "/vsicurl?", "/vsicurl_streaming/", "/vsis3/", "/vsis3_streaming/",
-                               "/vsigs/", "/vsigs_streaming/", "/vsiaz/", "/vsiaz_streaming/", "/vsiadls/", "/vsioss/",
-                               "/vsioss_streaming/", "/vsiswift/", "/vsiswift_streaming/", "/vsiwebhdfs/", "/vsihdfs/"})
+    for (const char* prefix :
+         {"/vsistdin/", "/vsistdin?", "/vsicurl/", "/vsicurl?", "/vsicurl_streaming/", "/vsis3/", "/vsis3_streaming/",
+          "/vsigs/", "/vsigs_streaming/", "/vsiaz/", "/vsiaz_streaming/", "/vsiadls/", "/vsioss/", "/vsioss_streaming/",
+          "/vsiswift/", "/vsiswift_streaming/", "/vsiwebhdfs/", "/vsihdfs/"})
         (void)VSIInstallPluginHandler(prefix, nothing);
     VSIFreeFilesystemPluginCallbacksStruct(nothing);
     CPLHTTPSetFetchCallback(fetchNothing, nullptr);
@@ -75,6 +77,8 @@ void closeNetwork() {
 /// Not all that GDAL has: what a virtual raster names is opened by these alone, too.
 void registerDrivers() {
     GDALRegister_MEM();
+    // Made, never opened: its names are addresses of this process.
+    if (GDALDriver* memory = GetGDALDriverManager()->GetDriverByName("MEM")) memory->pfnOpen = nullptr;
     GDALRegister_VRT();
     GDALRegister_GTiff();
     GDALRegister_PNG();

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <limits>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -97,8 +98,15 @@ std::optional<double> verticalUnitOf(const OGRSpatialReference* system) {
 
 bool namesHeights(const std::string& description) {
     const std::string small = lowerCase(description);
+    const auto isLetter = [&](std::size_t at) { return at < small.size() && small[at] >= 'a' && small[at] <= 'z'; };
+    // Short ones are words of their own: "random" has one within it.
+    const auto has = [&](std::string_view word) {
+        for (std::size_t at = small.find(word); at != std::string::npos; at = small.find(word, at + 1))
+            if (word.size() > 3 || ((at == 0 || !isLetter(at - 1)) && !isLetter(at + word.size()))) return true;
+        return false;
+    };
     return std::ranges::any_of(std::array{"height", "elevation", "altitude", "dem", "dtm", "dsm", "dgm", "dom", "höhe"},
-                               [&](const char* word) { return small.find(word) != std::string::npos; });
+                               has);
 }
 
 int colorBands(GDALDataset& raster) {

@@ -91,9 +91,12 @@ public:
         for (const Area& part : parts_) widest_ = std::max(widest_, part.box.MaxX - part.box.MinX);
     }
 
-    void put(MapSources& sources) {
-        if (!parts_.empty())
-            for (Area& building : buildings_) cutOut(building, sources);
+    void put(MapSources& sources, const Progress& progress) {
+        if (parts_.empty()) return;
+        for (Area& building : buildings_) {
+            progress.throwIfCancelled();
+            cutOut(building, sources);
+        }
     }
 
 private:
@@ -149,9 +152,12 @@ public:
         for (System& system : systems_) {
             const std::optional<WayToMap> way = wayToMap(state_, file_, system.said, system.points);
             if (!way) continue;
-            for (Feature& feature : system.features) place(feature, *way);
+            for (Feature& feature : system.features) {
+                progress_.throwIfCancelled();
+                place(feature, *way);
+            }
         }
-        PartsOfBuildings(buildings_, parts_).put(state_.sources);
+        PartsOfBuildings(buildings_, parts_).put(state_.sources, progress_);
         for (const std::vector<Area>* areas : {&buildings_, &parts_})
             for (const Area& area : *areas)
                 if (!area.gone && addOutlines(state_.sources, *area.geometry, area.shape, area.name) == 0)

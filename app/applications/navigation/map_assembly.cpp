@@ -23,33 +23,43 @@ constexpr std::size_t kMostCorners = 1000; ///< of an outline
 
 /// Rounds in which each missing height becomes the mean of its known neighbours.
 void fillHoles(glm::ivec2 samples, std::vector<float>& heights) {
-    std::vector<std::size_t> missing;
-    for (std::size_t k = 0; k < heights.size(); ++k)
-        if (!std::isfinite(heights[k])) missing.push_back(k);
     const auto columns = static_cast<std::size_t>(samples.x);
-    while (!missing.empty()) {
+    const auto eachNeighbour = [&](std::size_t k, const auto& use) {
+        if (k % columns > 0) use(k - 1);
+        if (k % columns + 1 < columns) use(k + 1);
+        if (k >= columns) use(k - columns);
+        if (k + columns < heights.size()) use(k + columns);
+    };
+    std::vector<bool> isQueued(heights.size(), false);
+    std::vector<std::size_t> edge; // missing beside known ones
+    const auto queueMissing = [&](std::size_t k) {
+        if (std::isfinite(heights[k]) || isQueued[k]) return;
+        isQueued[k] = true;
+        edge.push_back(k);
+    };
+    std::size_t known = 0;
+    for (std::size_t k = 0; k < heights.size(); ++k) {
+        if (!std::isfinite(heights[k])) continue;
+        ++known;
+        eachNeighbour(k, queueMissing);
+    }
+    if (known == 0 && !heights.empty()) throw InvalidInput("heights", "all of them are missing", "choose another file");
+    while (!edge.empty()) {
         std::vector<std::pair<std::size_t, float>> found;
-        std::vector<std::size_t> left;
-        for (const std::size_t k : missing) {
+        found.reserve(edge.size());
+        for (const std::size_t k : edge) {
             float sum = 0.0F;
             int count = 0;
-            const auto take = [&](bool inside, std::size_t n) {
-                if (!inside || !std::isfinite(heights[n])) return;
+            eachNeighbour(k, [&](std::size_t n) {
+                if (!std::isfinite(heights[n])) return;
                 sum += heights[n];
                 ++count;
-            };
-            take(k % columns > 0, k - 1);
-            take(k % columns + 1 < columns, k + 1);
-            take(k >= columns, k - columns);
-            take(k + columns < heights.size(), k + columns);
-            if (count > 0)
-                found.emplace_back(k, sum / static_cast<float>(count));
-            else
-                left.push_back(k);
+            });
+            found.emplace_back(k, sum / static_cast<float>(count));
         }
-        if (found.empty()) throw InvalidInput("heights", "all of them are missing", "choose another file");
         for (const auto& [k, height] : found) heights[k] = height;
-        missing = std::move(left);
+        edge.clear();
+        for (const auto& [k, height] : found) eachNeighbour(k, queueMissing);
     }
 }
 
@@ -96,6 +106,9 @@ void levelGround(MapSources& sources, MapReport& report) {
     for (const auto& line : sources.lines) std::ranges::for_each(line.points, take);
     for (const auto& name : sources.names) take(name.at);
     if (!(min.x <= max.x)) throw InvalidInput("map", "it has neither heights nor outlines", "choose other files");
+    constexpr double kWidest = 2e6; // metres
+    if (!(max.x - min.x <= kWidest && max.y - min.y <= kWidest))
+        throw InvalidInput("map", "its things lie too far apart for one map", "choose files of one place");
     const double margin = std::max(60.0, 0.1 * std::max(max.x - min.x, max.y - min.y));
     min -= margin;
     max += margin;

@@ -12,6 +12,8 @@
 
 #include <QCoreApplication>
 #include <QDateTime>
+#include <QGuiApplication>
+#include <QScreen>
 #include <QTimer>
 
 #include "app/studio/calibration/calibration_work.h"
@@ -38,6 +40,14 @@ constexpr double kTable = 0.2; // metres around the origin, where the lab tells 
 QString openingTitle(CaptureWay way) {
     return way == CaptureWay::lab ? CalibrationService::tr("Setting up the lab")
                                   : CalibrationService::tr("Opening the camera");
+}
+
+/// Whether the studio has a picture of that size itself.
+bool isSizeOfScreen(cv::Size size) {
+    return std::ranges::any_of(QGuiApplication::screens(), [size](const QScreen* screen) {
+        const QSizeF pixels = screen->devicePixelRatio() * QSizeF(screen->size());
+        return cv::Size(qRound(pixels.width()), qRound(pixels.height())) == size;
+    });
 }
 
 /// What came of reading or solving: a refusal is a result too.
@@ -114,9 +124,8 @@ CalibrationService::CalibrationService(Settings& settings, StudioDocument& docum
     connect(liveTimer_, &QTimer::timeout, this, [this] { look(); });
     connect(&jobs, &Jobs::progressed, this, [this, &jobs](int id) {
         for (const Jobs::Status& status : jobs.running())
-            if (status.id == id && status.title == openingTitle(state_.setup.way) && !bench_) {
-                live_.words =
-                    openingTitle(state_.setup.way) + QString(", %1 %").arg(100.0 * status.fraction, 0, 'f', 0);
+            if (status.id == id && status.title == openingTitle(CaptureWay::lab) && !bench_) {
+                live_.words = status.title + QString(", %1 %").arg(100.0 * status.fraction, 0, 'f', 0);
                 emit liveChanged();
             } else if (status.id == id && status.place == kPlace && state_.work != CalibrationState::Work::none) {
                 state_.fraction = status.fraction;
@@ -162,7 +171,7 @@ void CalibrationService::setSetup(const CalibrationSetup& setup) {
     }();
     const bool isElsewhere = setup.saved != state_.setup.saved;
     const bool isOtherBoard = setup.board != state_.setup.board;
-    const bool isUnread = state_.poses.empty() || (setup.way == CaptureWay::folder && !isReadWhole_);
+    const bool isUnread = state_.poses.empty() || (setup.way == CaptureWay::folder && !state_.isReadWhole);
     const bool isAnew = !onlyMore || (isOtherBoard && isUnread);
     if (!isAnew && isOtherBoard) setSpacing(setup.board.spacing);
     state_.setup = setup;
@@ -172,11 +181,6 @@ void CalibrationService::setSetup(const CalibrationSetup& setup) {
     else if (isElsewhere && (!state_.savedIn.empty() || state_.unsaved > 0))
         savePoses();
     if (!isAnew && isOtherBoard) {
-        if (setup.way == CaptureWay::camera) { // it was opened with the board
-            bench_ = nullptr;
-            isLooking_ = false;
-            if (active_) openBench();
-        }
         if (state_.counting() >= kFewestPoses && problemOf(setup).isEmpty()) solve();
         look();
     }
@@ -200,7 +204,7 @@ void CalibrationService::setSpacing(double spacing) {
 void CalibrationService::beginAnew() {
     cancel();
     jobs_.stop("open");
-    isLooking_ = false;
+    isOpening_ = isLooking_ = false;
     ++benchTry_;
     bench_ = nullptr;
     forgetPoses();
@@ -220,7 +224,7 @@ void CalibrationService::forgetPoses() {
     store_ = std::make_shared<PoseStore>(state_.setup.way == CaptureWay::lab);
     state_.poses.clear();
     passedOver_.clear();
-    isReadWhole_ = false;
+    state_.isReadWhole = false;
     state_.savedIn.clear();
     state_.unsaved = 0;
 }
@@ -243,7 +247,7 @@ void CalibrationService::withdrawVerdicts() {
 void CalibrationService::doNext() {
     switch (const NextStep next = nextOf(state_); next.what) {
     case NextStep::Do::read:
-        return read();
+        return read(state_.refusal.has_value() || state_.poses.empty());
     case NextStep::Do::photograph:
     case NextStep::Do::photographAgain:
         return photograph();
@@ -304,9 +308,14 @@ void CalibrationService::takePose(CalibrationPose pose) {
     else
         poses.push_back(std::move(pose));
     std::ranges::sort(poses, isNamedBefore, &CalibrationPose::name);
+    chooseFlat();
+}
+
+/// The first that counts, unless the user has said another.
+void CalibrationService::chooseFlat() {
     if (isFlatChosen_) return;
-    const auto first = std::ranges::find_if(poses, [](const CalibrationPose& one) { return one.counts(); });
-    state_.flatPose = first == poses.end() ? std::string() : first->name;
+    const auto first = std::ranges::find_if(state_.poses, [](const CalibrationPose& one) { return one.counts(); });
+    state_.flatPose = first == state_.poses.end() ? std::string() : first->name;
 }
 
 /// What a worker has put into the mailbox so far.
@@ -336,9 +345,11 @@ void CalibrationService::poll() {
 void CalibrationService::read(bool anew) {
     cancel();
     clearResults();
-    isReadWhole_ = false;
+    state_.isReadWhole = false;
     std::erase_if(state_.poses, [&](const CalibrationPose& pose) { return !pose.leftOut && (anew || !pose.seen); });
-    std::vector<std::string> without; // left out, or read before
+    if (anew)
+        for (CalibrationPose& pose : state_.poses) pose.seen = nullptr; // read when it is put back in
+    std::vector<std::string> without;                                   // left out, or read before
     for (const CalibrationPose& pose : state_.poses) without.push_back(pose.name);
     state_.work = CalibrationState::Work::reading;
     state_.stage = tr("Looking for images");
@@ -388,23 +399,16 @@ void CalibrationService::read(bool anew) {
 }
 
 void CalibrationService::takeRead(ReadCapture capture) {
-    isReadWhole_ = true;
+    state_.isReadWhole = true;
     passedOver_ = std::move(capture.warnings); // the poses have their own
     std::erase_if(passedOver_, [](const Finding& one) { return one.cause != Cause::passedOver; });
-    // Some may have been read before the others.
-    camera_ = {};
-    for (const CalibrationPose& pose : state_.poses) {
-        if (!pose.counts()) continue;
-        const cv::Size size(pose.pictures->camera.width(), pose.pictures->camera.height());
-        if (!camera_.empty() && size != camera_) {
-            state_.refusal = Finding{Cause::imageSize, pose.name, "", "its images have another size than those before",
-                                     "give images of one camera with one setting"};
-            emit changed();
-            return;
-        }
-        camera_ = size;
-    }
     solve();
+}
+
+void CalibrationService::tellNoProjector() {
+    rest_ = false;
+    state_.trouble = tr("The room has no projector. Add one in the Scene workspace.");
+    emit changed();
 }
 
 void CalibrationService::openBench() {
@@ -412,11 +416,7 @@ void CalibrationService::openBench() {
     setup.installed = projector();
     if (setup.way == CaptureWay::camera && setup.camera.empty()) return;
     const auto room = document_.state().installation;
-    if (projector() >= room->projectors.size()) {
-        state_.trouble = tr("The room has no projector. Add one in the Scene workspace.");
-        emit changed();
-        return;
-    }
+    if (projector() >= room->projectors.size()) return tellNoProjector();
     std::shared_ptr<PatternDisplay> display;
     if (setup.way == CaptureWay::camera) {
         try {
@@ -430,6 +430,7 @@ void CalibrationService::openBench() {
         }
     }
     live_.words = openingTitle(setup.way);
+    isOpening_ = true;
     const int attempt = ++benchTry_;
     jobs_.runWith<std::shared_ptr<CaptureBench>>(
         "open", kPlace, openingTitle(setup.way),
@@ -440,11 +441,16 @@ void CalibrationService::openBench() {
         [this, attempt](std::shared_ptr<CaptureBench> bench) {
             if (attempt != benchTry_) return;
             bench_ = std::move(bench);
+            isOpening_ = false;
             state_.trouble.clear();
+            if (rest_) return photograph(); // asked for meanwhile
             look();
             emit changed();
         },
-        [this](const std::exception& error) { setTrouble(error); });
+        [this](const std::exception& error) {
+            isOpening_ = false;
+            setTrouble(error);
+        });
     emit liveChanged();
 }
 
@@ -452,7 +458,7 @@ void CalibrationService::look() {
     isStale_ = isLooking_;
     if (!active_ || !bench_ || isLooking_ || state_.work == CalibrationState::Work::capturing) return;
     isLooking_ = true;
-    const int pose = state_.counting();
+    const int pose = freeNumber(state_);
     looker_->look([this, bench = bench_, board = state_.setup.board, pose, wanted = wanted(),
                    lit = lit()](const Progress& progress) {
         LiveSight sight;
@@ -463,7 +469,8 @@ void CalibrationService::look() {
             sight.camera = {picture.cols, picture.rows};
             sight.picture = pictureOfMat(picture);
             sight.corners = liveCorners(picture, board);
-            bench->setWanted(wanted ? std::optional(wanted->cameraFromBoard) : std::nullopt, board.spacing);
+            bench->setBoard(board);
+            bench->setWanted(wanted ? std::optional(wanted->cameraFromBoard) : std::nullopt);
             for (const cv::Point2d& point : wanted ? wanted->outline : bench->ghost(pose, lit))
                 sight.ghost.emplace_back(point.x, point.y);
         } catch (const std::exception& error) {
@@ -481,6 +488,7 @@ void CalibrationService::look() {
 /// The pose that would help most, once enough is known to tell; the first poses follow a plan.
 std::optional<NextPose> CalibrationService::wanted() const {
     if (!state_.result || state_.isImported || state_.setup.way == CaptureWay::folder) return std::nullopt;
+    if (isOld(state_)) return std::nullopt; // the pose that was helpful is there
     return state_.result->next;
 }
 
@@ -490,14 +498,6 @@ cv::Rect CalibrationService::lit() const {
     for (const CalibrationPose& pose : state_.poses)
         if (pose.counts() && pose.pictures) all |= pose.pictures->lit;
     return all;
-}
-
-/// Of the first pose that is not there.
-int CalibrationService::freeNumber() const {
-    int number = 0;
-    const auto isThere = [&](const CalibrationPose& pose) { return pose.name == nameOfPose(number); };
-    while (std::ranges::any_of(state_.poses, isThere)) ++number;
-    return number;
 }
 
 void CalibrationService::takeSight(const std::shared_ptr<CaptureBench>& from, LiveSight sight,
@@ -538,17 +538,22 @@ void CalibrationService::photograph() {
         clearResults();
     else
         withdrawVerdicts();
-    if (!bench_) return openBench();
+    if (projector() >= document_.state().installation->projectors.size()) return tellNoProjector();
+    if (!bench_) {
+        if (!isOpening_) openBench();
+        return emit changed();
+    }
     state_.work = CalibrationState::Work::capturing;
     state_.stage = tr("Waiting for the camera");
     mailbox_ = std::make_shared<Mailbox>();
-    const int number = freeNumber();
+    const int number = freeNumber(state_);
     const auto room = document_.state().installation;
     const glm::ivec2 size = room->projectors.at(projector()).camera.size;
     const auto work = [bench = bench_, store = store_, setup = state_.setup, number, size, helpful,
                        box = mailbox_](const Progress& progress) -> TakenPose {
         const std::scoped_lock lock(bench->mutex);
-        bench->setWanted(helpful ? std::optional(helpful->cameraFromBoard) : std::nullopt, setup.board.spacing);
+        bench->setBoard(setup.board);
+        bench->setWanted(helpful ? std::optional(helpful->cameraFromBoard) : std::nullopt);
         const auto onShot = [&](const Shot& shot) {
             const std::scoped_lock boxLock(box->mutex);
             box->shot = shot.image;
@@ -589,7 +594,6 @@ void CalibrationService::photograph() {
             CalibrationPose& pose = taken.pose;
             if (taken.saved) takeSaved(*taken.saved);
             const bool refused = pose.refusal.has_value();
-            if (pose.pictures) camera_ = {pose.pictures->camera.width(), pose.pictures->camera.height()};
             takePose(std::move(pose));
             emit changed();
             if (refused) {
@@ -655,7 +659,18 @@ void CalibrationService::solve() {
     withdrawVerdicts();
     ReadCapture capture;
     capture.views = countingViews(state_);
-    capture.camera = camera_;
+    for (const CalibrationPose& pose : state_.poses) { // some may have been read long before the others
+        if (!pose.counts() || !pose.pictures) continue;
+        const cv::Size size(pose.pictures->camera.width(), pose.pictures->camera.height());
+        if (!capture.camera.empty() && size != capture.camera) {
+            clearResults();
+            state_.refusal = Finding{Cause::imageSize, pose.name, "", "its images have another size than those before",
+                                     "give images of one camera with one setting"};
+            emit changed();
+            return;
+        }
+        capture.camera = size;
+    }
     capture.warnings = passedOver_;
     for (const CalibrationPose& pose : state_.poses)
         if (pose.counts()) addWarnings(pose.warnings, capture.warnings);
@@ -667,6 +682,8 @@ void CalibrationService::solve() {
         emit changed();
         return;
     }
+    if (state_.setup.way != CaptureWay::folder && projector() >= document_.state().installation->projectors.size())
+        return tellNoProjector();
     state_.work = CalibrationState::Work::solving;
     state_.stage = tr("Working out camera and projector");
     cv::Size size = state_.setup.projector;
@@ -676,14 +693,18 @@ void CalibrationService::solve() {
     }
     using Result = std::shared_ptr<const CalibrationResult>;
     const auto work = [capture = std::move(capture), size, setup = state_.setup, flat = flatPoints(),
-                       room = document_.state().installation,
-                       placement = placement()](const Progress& progress) mutable {
+                       room = document_.state().installation, placement = placement(),
+                       knowsSize = state_.setup.way != CaptureWay::folder ||
+                                   isSizeOfScreen(size)](const Progress& progress) mutable {
         return orFinding<Result>([&]() -> OrFinding<Result> {
             CalibrationSetup said = setup;
             said.projector = size;
             capture.order = said.order.empty() ? orderOf(said) : CaptureOrder{size, {}}; // its file may be gone
             auto result = std::make_shared<CalibrationResult>();
             result->solved = calibrateCapture(capture, size, {}, progress.part(0.0, 0.8));
+            if (knowsSize)
+                std::erase_if(result->solved.warnings,
+                              [](const Finding& one) { return one.cause == Cause::projectorSize; });
             result->residuals = residualsOf(capture.views, result->solved);
             result->heldOutMillimetres = heldOutMillimetresOf(result->solved);
             result->date = utcDate();
@@ -717,14 +738,10 @@ void CalibrationService::setLeftOut(const std::string& pose, bool leftOut) {
     cancel();
     found->leftOut = leftOut;
     clearResults();
-    if (state_.flatPose == pose && leftOut) {
-        state_.flatPose.clear();
-        isFlatChosen_ = false;
-    }
-    for (const CalibrationPose& one : state_.poses)
-        if (state_.flatPose.empty() && one.counts()) state_.flatPose = one.name;
+    if (state_.flatPose == pose && leftOut) isFlatChosen_ = false;
+    chooseFlat();
     // Of a folder, reading ended at the first refusal, and what was left out then was not read.
-    if (state_.setup.way == CaptureWay::folder && (!isReadWhole_ || (!leftOut && !found->seen)))
+    if (state_.setup.way == CaptureWay::folder && (!state_.isReadWhole || (!leftOut && !found->seen)))
         read(false);
     else if (state_.counting() >= kFewestPoses)
         solve();
@@ -832,10 +849,14 @@ void CalibrationService::reportTo(const std::filesystem::path& file, std::vector
     }
     report.refusal = state_.refusal;
     for (const CalibrationPose& pose : state_.poses) {
-        if (pose.refusal && !pose.leftOut && !report.refusal) report.refusal = pose.refusal;
+        if (!state_.result && pose.refusal && !pose.leftOut && !report.refusal) report.refusal = pose.refusal;
         if (!pose.counts() || !pose.pictures) continue;
         report.observations.push_back(*pose.seen);
         report.sights.push_back(pose.pictures->grey);
+    }
+    if (isOld(state_)) { // then they are not those of the figures
+        report.observations.clear();
+        report.sights.clear();
     }
     jobs_.run<bool>(
         "report", kPlace, tr("Writing the report"),

@@ -109,6 +109,7 @@ private:
     void takeRead(ReadCapture capture);
     void setSpacing(double spacing);
     void openBench();
+    void tellNoProjector();
     void look();
     void takeSight(const std::shared_ptr<CaptureBench>& from, LiveSight sight, const std::string& trouble);
     void clearResults();
@@ -116,6 +117,7 @@ private:
     void poll();
     void endWork();
     void takePose(CalibrationPose pose);
+    void chooseFlat();
     void takeSaved(const SavedPoses& saved);
     void forgetPoses();
     void setTrouble(const std::exception& error);
@@ -127,7 +129,6 @@ private:
     [[nodiscard]] std::optional<BoardPoints> flatPoints() const;
     [[nodiscard]] std::optional<NextPose> wanted() const;
     [[nodiscard]] cv::Rect lit() const;
-    [[nodiscard]] int freeNumber() const;
 
     Settings& settings_;
     StudioDocument& document_;
@@ -146,14 +147,13 @@ private:
     JobSlots jobs_;
     QTimer* liveTimer_;
     bool active_ = false;
+    bool isOpening_ = false; ///< the bench
     bool isLooking_ = false;
     bool isStale_ = false;            ///< what is looked at has changed meanwhile: another look follows
     bool isFlatChosen_ = false;       ///< by the user; else it is the first pose
     bool rest_ = false;               ///< the poses that are missing follow by themselves
     int benchTry_ = 0;                ///< counts, so that a bench that comes too late is not taken
-    cv::Size camera_;                 ///< of the poses
     std::vector<Finding> passedOver_; ///< what lies beside the poses in their folder
-    bool isReadWhole_ = false;        ///< the folder; else reading ended at a refusal
     std::unique_ptr<Looker> looker_;  ///< last: it refers to the rest
 };
 

@@ -76,6 +76,8 @@ CaptureOrder orderOf(const CalibrationSetup& setup) {
                                : readCaptureOrder(setup.order, setup.projector);
 }
 
+std::string nameOfPose(int number) { return "pose_" + std::to_string(number + 1); }
+
 QString boardWords(const CalibrationBoard& board) {
     switch (board.kind) {
     case CalibrationBoard::Kind::circles:

@@ -52,6 +52,8 @@ struct CalibrationSetup {
 [[nodiscard]] CaptureWay keptWay(const Settings& settings);
 void keepSetup(Settings& settings, const CalibrationSetup& setup);
 
+/// "pose_1" is that of number 0.
+[[nodiscard]] std::string nameOfPose(int number);
 /// What the images of a pose show. Throws InvalidInput; DataError where the order file cannot be used.
 [[nodiscard]] CaptureOrder orderOf(const CalibrationSetup& setup);
 /// "Chessboard, 9 × 7 inner corners, squares of 25 mm".

@@ -175,7 +175,8 @@ NextStep refusedNext(const CalibrationState& state, const Finding& finding) {
     } else if (isOfPose && (finding.cause == Cause::rigMoved || finding.cause == Cause::boardNotFound ||
                             finding.cause == Cause::boardUnlit || finding.cause == Cause::lateFrame ||
                             finding.cause == Cause::mirrored || finding.cause == Cause::unreadableImage ||
-                            finding.cause == Cause::doubledImage || finding.cause == Cause::missingImage)) {
+                            finding.cause == Cause::doubledImage || finding.cause == Cause::missingImage ||
+                            finding.cause == Cause::imageSize)) {
         next.what = Do::leaveOut;
         next.button = tr("Leave %1 out").arg(QString::fromStdString(finding.view));
     } else if (!isOfSetup(finding)) { // what is set wrong is not mended by reading again
@@ -192,7 +193,7 @@ NextStep workNext(const CalibrationState& state) {
         next.title = tr("Reading the poses");
         break;
     case CalibrationState::Work::capturing:
-        next.title = tr("Photographing pose %1").arg(static_cast<int>(state.poses.size()) + 1);
+        next.title = tr("Photographing pose %1").arg(freeNumber(state) + 1);
         next.text = state.setup.way == CaptureWay::lab
                         ? tr("The lab's projector shows its patterns one after the other.")
                         : tr("Touch nothing: camera, projector and board stand still until all patterns were shown.");
@@ -204,10 +205,13 @@ NextStep workNext(const CalibrationState& state) {
 }
 
 NextStep photographNext(const CalibrationState& state) {
-    const int pose = static_cast<int>(state.poses.size()) + 1;
-    NextStep next{Do::photograph, Tone::quiet, {}, {}, tr("Photograph pose %1 of %2").arg(pose).arg(state.setup.poses)};
+    NextStep next{Do::photograph,
+                  Tone::quiet,
+                  {},
+                  {},
+                  tr("Photograph pose %1 of %2").arg(state.counting() + 1).arg(state.setup.poses)};
     const bool isLab = state.setup.way == CaptureWay::lab;
-    if (pose == 1) {
+    if (freeNumber(state) == 0) {
         next.title = isLab ? tr("Begin with the board flat on the table") : tr("Lay the board flat on the table");
         next.text = isLab ? tr("The lab lays the board for you; its outline shows where. From this pose the studio "
                                "learns where the table is.")
@@ -286,7 +290,17 @@ NextStep solvedNext(const CalibrationState& state) {
         const FindingWords words = wordsOf(doubts.front());
         next.title = words.title;
         next.text = words.text + ' ' + words.remedy;
-        const bool isHelpedByPose = doubts.front().cause != Cause::clipped && doubts.front().cause != Cause::boardKind;
+        // What may be so, and only who was there can tell.
+        const Cause cause = doubts.front().cause;
+        const bool isQuestion = cause == Cause::projectorSize || cause == Cause::unlikelyLength;
+        if (isQuestion) {
+            next.title = cause == Cause::projectorSize ? tr("Has the projector %1 × %2 pixels?")
+                                                             .arg(result.solved.projector.size.width)
+                                                             .arg(result.solved.projector.size.height)
+                                                       : tr("Are these lengths right?");
+            next.button = tr("Yes, use this calibration");
+        }
+        const bool isHelpedByPose = cause != Cause::clipped && !isQuestion;
         if (state.setup.way != CaptureWay::folder && isHelpedByPose) {
             next.what = Do::photograph;
             next.button = tr("Photograph another pose");
@@ -508,17 +522,18 @@ NextStep nextOf(const CalibrationState& state) {
                 tr("Connect a camera that sees the table, and choose it at the left."),
                 {}};
     const bool wantsMore = !isFolder && state.counting() < state.setup.poses;
-    const bool isOld = state.result && state.result->solved.views.size() != static_cast<std::size_t>(state.counting());
-    if (state.result && (!wantsMore || state.isUsed()) && !(isOld && !wantsMore)) return solvedNext(state);
+    if (state.result && (!wantsMore || state.isUsed()) && !(isOld(state) && !wantsMore)) return solvedNext(state);
     if (isFolder && state.poses.empty())
         return {Do::read, Tone::quiet, tr("Say which board and projector, then read the images"),
                 tr("What is set at the left must be what was photographed: count the board's inner corners and measure "
                    "one square."),
                 tr("Read the images")};
+    if (isFolder && !state.isReadWhole)
+        return {Do::read, Tone::quiet, tr("Not all images were read"), {}, tr("Read the rest")};
     if (wantsMore) return photographNext(state);
     return {Do::solve,
             Tone::quiet,
-            isOld ? tr("A pose is not in the result yet") : tr("All poses are there"),
+            isOld(state) ? tr("A pose is not in the result yet") : tr("All poses are there"),
             {},
             tr("Work out camera and projector")};
 }
@@ -624,6 +639,23 @@ InstallationVersion versionOf(const CalibrationState& state, const Installation&
     version.installation = installation;
     version.isSimulated = result.isSimulated;
     return version;
+}
+
+bool isOld(const CalibrationState& state) {
+    return state.result && !state.isImported &&
+           state.result->solved.views.size() != static_cast<std::size_t>(state.counting());
+}
+
+int freeNumber(const CalibrationState& state) {
+    const auto isThere = [&](int number) {
+        return std::ranges::any_of(state.poses, [&](const CalibrationPose& pose) {
+            const bool isRefused = pose.refusal || (state.refusal && state.refusal->view == pose.name);
+            return pose.name == nameOfPose(number) && !isRefused;
+        });
+    };
+    int number = 0;
+    while (isThere(number)) ++number;
+    return number;
 }
 
 std::vector<ViewObservations> countingViews(const CalibrationState& state) {

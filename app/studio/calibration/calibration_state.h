@@ -71,11 +71,12 @@ struct CalibrationState {
     std::optional<Finding> refusal;                  ///< of the capture as a whole
     std::shared_ptr<const CalibrationResult> result; ///< of the poses that count
     Work work = Work::none;
-    double fraction = 0.0;   ///< of the work
-    QString stage;           ///< in words
-    QString trouble;         ///< what failed apart from the capture: a camera that is gone, a folder that is empty
-    std::string flatPose;    ///< name of the pose in which the board lay flat on the table
-    bool isImported = false; ///< the result came from a file, without poses to look at
+    double fraction = 0.0;    ///< of the work
+    QString stage;            ///< in words
+    QString trouble;          ///< what failed apart from the capture: a camera that is gone, a folder that is empty
+    std::string flatPose;     ///< name of the pose in which the board lay flat on the table
+    bool isReadWhole = false; ///< all poses of the folder; else reading ended at a refusal, or was cancelled
+    bool isImported = false;  ///< the result came from a file, without poses to look at
     std::filesystem::path savedIn;        ///< folder of the images of the poses; empty while there are none
     int unsaved = 0;                      ///< poses whose images are only in memory
     std::vector<std::string> askedBeside; ///< what the room holds, while it asks (SimulatedQuestion); else empty
@@ -138,6 +139,11 @@ struct FindingWords {
 
 /// The result as it is kept and exchanged.
 [[nodiscard]] CalibrationRecord recordOf(const CalibrationResult& result);
+
+/// Poses have come or gone since it was solved.
+[[nodiscard]] bool isOld(const CalibrationState& state);
+/// Of the next pose that is photographed: the first that is not there, or is taken again.
+[[nodiscard]] int freeNumber(const CalibrationState& state);
 
 /// What the poses that count tell together.
 [[nodiscard]] std::vector<ViewObservations> countingViews(const CalibrationState& state);

@@ -48,8 +48,8 @@ private:
 class LabBench final : public CaptureBench {
 public:
     LabBench(const CalibrationSetup& setup, const Installation& room, const Progress& progress)
-        : setup_(setup), truth_(labTruth(room, setup.installed)), lab_(truth_, setup.board, {}, kLabSeed),
-          camera_(lab_, clock_), display_(openLabDisplay(lab_)),
+        : setup_(setup), saidSpacing_(setup.board.spacing), truth_(labTruth(room, setup.installed)),
+          lab_(truth_, setup.board, {}, kLabSeed), camera_(lab_, clock_), display_(openLabDisplay(lab_)),
           poses_(lab_.proposePoses(setup.poses + kLabSpare, progress.part(0.1, 0.9))) {
         if (!setup.fault) return;
         LabCapture capture;
@@ -103,7 +103,8 @@ public:
         return outline;
     }
     [[nodiscard]] const Installation* truth() const override { return &truth_; }
-    void setWanted(const std::optional<PoseVector>& cameraFromBoard, double spacing) override {
+    void setBoard(const CalibrationBoard& board) override { saidSpacing_ = board.spacing; }
+    void setWanted(const std::optional<PoseVector>& cameraFromBoard) override {
         wanted_.reset();
         if (!cameraFromBoard) return;
         const PoseVector& pose = *cameraFromBoard;
@@ -113,8 +114,8 @@ public:
         for (int row = 0; row < 3; ++row) {
             for (int column = 0; column < 3; ++column) matrix[column][row] = turn(row, column);
             // The lab's board is as large as it was printed, whatever is said of it later.
-            matrix[3][row] =
-                lab_.options().metresPerUnit * setup_.board.spacing / spacing * pose[3 + static_cast<std::size_t>(row)];
+            matrix[3][row] = lab_.options().metresPerUnit * setup_.board.spacing / saidSpacing_ *
+                             pose[3 + static_cast<std::size_t>(row)];
         }
         wanted_ = glm::inverse(lab_.camera().cameraFromWorld) * matrix;
     }
@@ -147,6 +148,7 @@ private:
     }
 
     CalibrationSetup setup_;
+    double saidSpacing_; ///< of the board, which may be another than it truly has
     Installation truth_;
     BoardLab lab_;
     std::shared_ptr<ManualClock> clock_ = std::make_shared<ManualClock>();
@@ -190,6 +192,11 @@ public:
         size_ = picture.size();
         return picture;
     }
+    void setBoard(const CalibrationBoard& board) override {
+        if (board == setup_.board) return;
+        setup_.board = board;
+        capturer_.reset();
+    }
     [[nodiscard]] bool isLive() const override { return camera_->isLive(); }
     [[nodiscard]] BoardOutline ghost(int pose, const cv::Rect& lit) const override {
         const cv::Size size = size_.empty() ? camera_->size() : size_;
@@ -209,8 +216,6 @@ private:
 };
 
 } // namespace
-
-std::string nameOfPose(int pose) { return "pose_" + std::to_string(pose + 1); }
 
 std::vector<cv::Point3d> cornersOf(const CalibrationBoard& board) {
     const std::vector<cv::Point3d> points = pointsOf(board);
@@ -237,8 +242,9 @@ BoardOutline guideOutline(const CalibrationBoard& board, const cv::Rect& area, d
     const Guide& guide = kGuides[static_cast<std::size_t>(pose) % kGuides.size()];
     std::vector<cv::Point3d> corners = cornersOf(board);
     const cv::Point3d far = corners[2];
-    // A lit area may be high and narrow, or low and wide.
-    const double widest = std::min<double>(area.width, kGuideAspect * area.height);
+    // A lit area may be high and narrow, or low and wide, and so may a board; a usual one is 4 to 3.
+    const double upright = std::min(1.0, 0.75 * far.x / far.y);
+    const double widest = std::min<double>(area.width, kGuideAspect * area.height * upright);
     const double distance = focal * far.x / (guide.width * widest);
     cv::Mat about[3];
     cv::Rodrigues(cv::Vec3d(guide.aboutX * kRadians, 0, 0), about[0]);

@@ -16,9 +16,6 @@
 
 namespace lumorph::studio {
 
-/// "pose_1" is that of number 0.
-[[nodiscard]] std::string nameOfPose(int pose);
-
 /// The outline of a board in the camera's picture: its corners in turn, camera pixels.
 using BoardOutline = std::vector<cv::Point2d>;
 
@@ -37,9 +34,10 @@ public:
     /// Where the board should be for the pose of this number. `lit`: where in the camera's picture the projector's
     /// light was seen; empty: not known.
     [[nodiscard]] virtual BoardOutline ghost(int pose, const cv::Rect& lit) const = 0;
-    /// From now on this pose (the camera from the board) is the one to take next; nothing: as planned. `spacing`: of
-    /// the board, as it is said now, in the unit of the pose.
-    virtual void setWanted(const std::optional<PoseVector>& /*cameraFromBoard*/, double /*spacing*/) {}
+    /// What is said of the board now; of another kind it is another bench's.
+    virtual void setBoard(const CalibrationBoard& board) = 0;
+    /// From now on this pose (the camera from the board, in its unit) is the one to take next; nothing: as planned.
+    virtual void setWanted(const std::optional<PoseVector>& /*cameraFromBoard*/) {}
     /// Automatics of the camera that are still on, and what to do about them.
     [[nodiscard]] virtual std::vector<std::string> automatics() const { return {}; }
     /// Camera and projector as they truly are; null where nobody knows.

@@ -396,6 +396,7 @@ void ChainService::cancel() {
 }
 
 void ChainService::follow() {
+    state_.restEnded.reset(); // the room is another one now
     state_.session.follow(*document_.state().installation);
     emit changed();
 }

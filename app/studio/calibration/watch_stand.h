@@ -30,6 +30,7 @@ public:
 
 signals:
     void changed();
+    void checkWanted(); ///< of the room, by whoever has read it
 
 private:
     WatchStand stand_;

@@ -62,12 +62,10 @@ QWidget* makeWatchChip(Studio& studio, QWidget* parent) {
         const bool isAlarm = stand.how == WatchStand::How::alarm;
         chip->setIcon(icon(isAlarm ? "warning" : "eye", isAlarm ? IconRole::warning : IconRole::muted));
         chip->setText(stand.words);
-        chip->setToolTip(QString::fromStdString(stand.sentence) + (isAlarm ? "\nClick to check the room." : ""));
+        chip->setToolTip(QString::fromStdString(stand.sentence) + "\nClick to check the room.");
     };
     QObject::connect(&studio.watch, &WatchBoard::changed, chip, show);
-    QObject::connect(chip, &QPushButton::clicked, &studio.commands, [&studio] {
-        if (QAction* check = studio.commands.find("calibrate.chain.check")) check->trigger();
-    });
+    QObject::connect(chip, &QPushButton::clicked, &studio.watch, &WatchBoard::checkWanted);
     show();
     return chip;
 }

@@ -95,9 +95,11 @@ const BudgetItem* mostOf(const ErrorBudget& budget) {
     return most->share > kMost ? &*most : nullptr;
 }
 
-/// "Left by prediction: 99 % of it."
+/// "The largest part: Left by prediction, 99 % of the whole."
 QString shareWords(const BudgetItem& item) {
-    return QObject::tr("%1: %2 % of it.").arg(partName(item.part)).arg(100.0 * item.share, 0, 'f', 0);
+    return QObject::tr("The largest part: %1, %2 % of the whole.")
+        .arg(partName(item.part))
+        .arg(100.0 * item.share, 0, 'f', 0);
 }
 
 /// Where measuring again helps little.
@@ -106,15 +108,15 @@ StepCardText cardWithoutAdvice(const BudgetItem* most) {
     if (!most) return {StepTone::good, QObject::tr("No part stands out"), little, {}};
     const QString slower = QObject::tr("It falls where the hand goes more slowly, and where the time from tracker to "
                                        "light is shorter.");
-    return {StepTone::good, shareWords(*most), most->part == BudgetPart::prediction ? slower : little, {}};
+    return {StepTone::good, shareWords(*most).chopped(1), most->part == BudgetPart::prediction ? slower : little, {}};
 }
 
 /// The advised link, as the card over the budget says it.
 StepCardText cardOf(const BudgetAdvice& advice, std::size_t link, bool isTrackerPlaced, const BudgetItem* most) {
     const QString title = chainLinks()[link].title.toLower();
-    QString text =
-        QObject::tr("It takes the whole %1 down to about %2.").arg(wholeText(advice.before), wholeText(advice.after));
-    if (most) text = shareWords(*most) + ' ' + text;
+    QString text = QObject::tr("That takes the whole from %1 down to about %2.")
+                       .arg(wholeText(advice.before), wholeText(advice.after));
+    if (most) text += ' ' + shareWords(*most);
     if (!isTrackerPlaced)
         text += ' ' + QObject::tr("So far nobody has said where the tracker's world lies: its part counts as if that "
                                   "were laid in by a ruler.");

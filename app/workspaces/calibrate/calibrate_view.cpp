@@ -233,7 +233,7 @@ private:
         const bool wantsMore = state.counting() < state.setup.poses && state.work == CalibrationState::Work::none;
         if (wantsMore || offersAnother(state)) {
             for (const QPointF& point : live.ghost) marks.ghost << point;
-            marks.ghostText = QString("Pose %1").arg(state.counting() + 1);
+            marks.ghostText = QString("Pose %1").arg(freeNumber(state) + 1);
         }
         marks.words = live.words;
         legend_->setText(live.picture.isNull() ? QString()

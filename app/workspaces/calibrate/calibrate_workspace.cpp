@@ -100,17 +100,19 @@ std::unique_ptr<DriftService> CalibrateWorkspace::makeWatch() {
         const std::string address = room.cameras.empty() ? std::string() : room.cameras.front().address;
         return address.empty() ? labShowCamera(withLabCamera(studio_.lab.truth())) : machineShowCamera(address);
     };
-    const auto check = [this] {
-        emit studio_.commands.workspaceWanted("calibrate");
-        selection_.setWhole(true);
-        selection_.setBudget(false);
-        const auto& links = chainLinks();
-        const auto found = std::ranges::find(links, LinkId::check, &ChainLink::id);
-        chain_.choose(static_cast<std::size_t>(found - links.begin()));
-        const auto& cameras = studio_.document.state().installation->cameras;
-        if (!cameras.empty() && !cameras.front().address.empty()) chain_.setWay(LinkWay::live);
-    };
-    return std::make_unique<DriftService>(sentShowOf(studio_.show), camera, studio_.notices, check);
+    return std::make_unique<DriftService>(sentShowOf(studio_.show), camera, studio_.notices, [this] { checkRoom(); });
+}
+
+/// By the camera that watches.
+void CalibrateWorkspace::checkRoom() {
+    emit studio_.commands.workspaceWanted("calibrate");
+    selection_.setWhole(true);
+    selection_.setBudget(false);
+    const auto& links = chainLinks();
+    const auto found = std::ranges::find(links, LinkId::check, &ChainLink::id);
+    chain_.choose(static_cast<std::size_t>(found - links.begin()));
+    const auto& cameras = studio_.document.state().installation->cameras;
+    if (!cameras.empty() && !cameras.front().address.empty()) chain_.setWay(LinkWay::live);
 }
 
 void CalibrateWorkspace::addWatchCommand() {
@@ -124,6 +126,7 @@ void CalibrateWorkspace::addWatchCommand() {
         if (parts & StatePart::installation) followWatch();
     });
     followWatch();
+    connect(&studio_.watch, &WatchBoard::checkWanted, this, [this] { checkRoom(); });
     connect(watchAction_, &QAction::toggled, this, [this](bool on) {
         if (!watch_) {
             watch_ = makeWatch();

@@ -42,6 +42,7 @@ private:
     [[nodiscard]] QString watchObstacle() const;
     void followWatch();
     void tellWatch();
+    void checkRoom();
     [[nodiscard]] QWidget* makeSwitched(QWidget* single, QWidget* whole);
     Studio& studio_;
     CalibrationService service_;

@@ -295,6 +295,20 @@ TEST_F(MapHeights, NoFileReachesTheNetwork) {
     EXPECT_TRUE(listener.hears());
 }
 
+TEST_F(MapHeights, VirtualRastersNameFilesAndNoAddressOfTheProcess) {
+    const std::vector<float> own(512 * 512, 100.0F);
+    const auto at = reinterpret_cast<std::uintptr_t>(own.data());
+    EXPECT_THROW((void)importMap(write("mosaic.vrt", virtualOf("MEM:::DATAPOINTER=" + std::to_string(at) +
+                                                               ",PIXELS=512,LINES=512,DATATYPE=Float32"))),
+                 DataError);
+}
+
+TEST_F(MapHeights, ThingsOfTwoWorldsAreNoMap) {
+    const fs::path file = write("far.geojson", R"({"type":"Feature","properties":{},"geometry":{"type":"LineString",)"
+                                               R"("coordinates":[[-1e308,0],[1.7e308,1000]]}})");
+    EXPECT_THROW((void)importMap(file), Error);
+}
+
 TEST_F(MapHeights, CasesOfTheWorldHaveTheirHeights) {
     for (const char* name : {"scale01.tif", "feet-unit.tif", "terrarium.png"}) {
         const auto file = mapCase(name);

@@ -214,6 +214,15 @@ TEST(GltfInstancing, EachCopyStandsInTheFrameOfItsNode) {
     EXPECT_TRUE(readGlb(writeGlb(model), "again").nodes == model.nodes);
 }
 
+TEST(GltfInstancing, CopiesOfALongNameAreCountedBeforeTheyAreMade) {
+    GltfBuilder builder = GltfBuilder::triangle();
+    builder.document["nodes"][0]["name"] = std::string(std::size_t{1} << 20U, 'n');
+    const std::size_t places = builder.document["accessors"].size();
+    builder.document["accessors"].push_back({{"componentType", 5126}, {"count", 90000}, {"type", "VEC3"}}); // zeros
+    builder.document["nodes"][0]["extensions"]["EXT_mesh_gpu_instancing"]["attributes"] = {{"TRANSLATION", places}};
+    EXPECT_THAT(refusalOf(builder), HasSubstr("node 0"));
+}
+
 TEST(GltfInstancing, IsRefusedWhereItContradictsItself) {
     GltfBuilder builder = GltfBuilder::triangle();
     builder.document["nodes"][0]["extensions"] = instancing(builder, {0, 0, 0, 1, 1, 1}, {}, {1, 1, 1});
