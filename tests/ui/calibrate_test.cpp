@@ -428,10 +428,10 @@ TEST(BoardGuide, LiesInWhatTheProjectorLights) {
                                    cv::Rect(100, 700, 1100, 200)})
             for (int pose = 0; pose < 9; ++pose)
                 for (const cv::Point2d& corner : studio::guideOutline(parseCalibrationBoard(text), lit, 1600.0, pose)) {
-                    EXPECT_GE(corner.x, lit.x) << text << ", " << pose << ", " << lit;
-                    EXPECT_GE(corner.y, lit.y) << text << ", " << pose << ", " << lit;
-                    EXPECT_LE(corner.x, lit.x + lit.width) << text << ", " << pose << ", " << lit;
-                    EXPECT_LE(corner.y, lit.y + lit.height) << text << ", " << pose << ", " << lit;
+                    EXPECT_GE(corner.x, lit.x - 1e-6) << text << ", " << pose << ", " << lit;
+                    EXPECT_GE(corner.y, lit.y - 1e-6) << text << ", " << pose << ", " << lit;
+                    EXPECT_LE(corner.x, lit.x + lit.width + 1e-6) << text << ", " << pose << ", " << lit;
+                    EXPECT_LE(corner.y, lit.y + lit.height + 1e-6) << text << ", " << pose << ", " << lit;
                 }
 }
 

@@ -162,6 +162,20 @@ private:
     std::unique_ptr<PoseCapture> capturer_;
 };
 
+/// Lit areas may be high and narrow, or low and wide, and so may boards.
+BoardOutline movedInto(const cv::Rect& area, BoardOutline outline) {
+    const auto [left, right] = std::ranges::minmax(outline, {}, &cv::Point2d::x);
+    const auto [top, bottom] = std::ranges::minmax(outline, {}, &cv::Point2d::y);
+    const double scale = std::min({1.0, area.width / (right.x - left.x), area.height / (bottom.y - top.y)});
+    const cv::Point2d middle(0.5 * (left.x + right.x), 0.5 * (top.y + bottom.y));
+    const cv::Point2d half(0.5 * scale * (right.x - left.x), 0.5 * scale * (bottom.y - top.y));
+    const auto between = [](double at, double least, double most) { return std::max(least, std::min(at, most)); };
+    const cv::Point2d moved(between(middle.x, area.x + half.x, area.x + area.width - half.x),
+                            between(middle.y, area.y + half.y, area.y + area.height - half.y));
+    for (cv::Point2d& point : outline) point = moved + scale * (point - middle);
+    return outline;
+}
+
 class CameraBench final : public CaptureBench {
 public:
     CameraBench(const CalibrationSetup& setup, const CameraOpener& open, std::shared_ptr<PatternDisplay> display)
@@ -242,9 +256,7 @@ BoardOutline guideOutline(const CalibrationBoard& board, const cv::Rect& area, d
     const Guide& guide = kGuides[static_cast<std::size_t>(pose) % kGuides.size()];
     std::vector<cv::Point3d> corners = cornersOf(board);
     const cv::Point3d far = corners[2];
-    // A lit area may be high and narrow, or low and wide, and so may a board; a usual one is 4 to 3.
-    const double upright = std::min(1.0, 0.75 * far.x / far.y);
-    const double widest = std::min<double>(area.width, kGuideAspect * area.height * upright);
+    const double widest = std::min<double>(area.width, kGuideAspect * area.height);
     const double distance = focal * far.x / (guide.width * widest);
     cv::Mat about[3];
     cv::Rodrigues(cv::Vec3d(guide.aboutX * kRadians, 0, 0), about[0]);
@@ -258,7 +270,7 @@ BoardOutline guideOutline(const CalibrationBoard& board, const cv::Rect& area, d
         outline.emplace_back(area.x + (0.5 + guide.x) * area.width + focal * point[0] / point[2],
                              area.y + (0.5 + guide.y) * area.height + focal * point[1] / point[2]);
     }
-    return outline;
+    return movedInto(area, std::move(outline));
 }
 
 std::shared_ptr<CaptureBench> openLabBench(const CalibrationSetup& setup, const Installation& room,
