@@ -309,7 +309,9 @@ public:
         if (const std::string date = entries_.word(Role::date); isIsoDate(date)) record.source.date = date;
         record.source.board = entries_.word(Role::board);
         const std::string simulated = lowerCase(entries_.word(Role::simulated));
-        record.source.isSimulated = simulated == "true" || simulated == "yes" || simulated == "1";
+        const bool isWord = simulated == "true" || simulated == "yes" || simulated == "false" || simulated == "no";
+        record.source.isSimulated =
+            isWord ? simulated == "true" || simulated == "yes" : numberOr(Role::simulated, 0.0, 0.0) != 0.0;
         result.state.camera = result.camera.lens;
         result.state.projector = result.projector.lens;
         result.state.projectorFromCamera = result.projectorFromCamera;

@@ -14,9 +14,10 @@ namespace lumorph {
 namespace {
 
 constexpr int kPointsAcross = 14, kPointsDown = 10; // of a planned view, in the projector
-constexpr double kLitShares[] = {0.95, 0.5};        // of the board that the projector must reach: best nearly all
-constexpr double kMargin = 0.02;                    // of the camera's picture that stays free around the board
-constexpr double kTiltsDegrees[] = {22.0, 45.0};    // more, and a board's points are hard to find
+// Of the board that the projector must reach, where that can be; poses that are lit whole tell less.
+constexpr double kLitShares[] = {0.8, 0.5};
+constexpr double kMargin = 0.02;                 // of the camera's picture that stays free around the board
+constexpr double kTiltsDegrees[] = {22.0, 45.0}; // more, and a board's points are hard to find
 constexpr double kUnknownCorner = 0.003; // of the width: what a distortion that was left out may do at the corner
 
 /// The grid of camera pixels and depths over which both devices see.
