@@ -174,7 +174,13 @@ ReadPose readPose(const CapturedView& view, const std::vector<cv::Mat>& images, 
          (isGrayCode(order) && (sequence->cause == Cause::projectorGamma || sequence->cause == Cause::clipped)));
     if (sequence && !isBearable) throw CaptureRefused(*sequence);
     troubles.add(sequence);
-    troubles.throwIf(checkStripes(view, images, order));
+    if (const auto stripes = checkStripes(view, images, order)) {
+        // What moved between a pattern and its inverse has edges of its own, which look like finer stripes.
+        const cv::Mat white = decodeView(images, order).white;
+        if (const auto seen = findBoard(white, board))
+            troubles.throwIf(checkSteadiness(view, images, order, white, seen->seen));
+        troubles.throwIf(stripes);
+    }
     if (const auto phases = checkPhases(view, images, order)) {
         // Steps of another brightness look like steps in another order, or like a curve.
         const SteadiedImages steady = steadied(images, order);

@@ -392,6 +392,8 @@ TEST(CalibrationQuestion, WhatMayBeSoIsAskedAndUsedWithAYes) {
     EXPECT_TRUE(asked(size).text.contains("1023 x 768 is no usual size"));
     const Finding length{Cause::unlikelyLength, "", "", "points of the board are 0.001 mm apart", "give millimetres"};
     EXPECT_EQ(asked(length).title, "Are these lengths right?");
+    const Finding turned{Cause::phaseOrder, "", "", "the projector would hang upside down", "check the steps' order"};
+    EXPECT_EQ(asked(turned).title, "Does the projector hang upside down?");
 }
 
 TEST(CalibrationPoses, AreSolvedAgainWhereTheResultLacksOneAndTheFreeNumberIsTaken) {

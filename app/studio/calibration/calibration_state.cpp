@@ -292,12 +292,14 @@ NextStep solvedNext(const CalibrationState& state) {
         next.text = words.text + ' ' + words.remedy;
         // What may be so, and only who was there can tell.
         const Cause cause = doubts.front().cause;
-        const bool isQuestion = cause == Cause::projectorSize || cause == Cause::unlikelyLength;
+        const bool isQuestion =
+            cause == Cause::projectorSize || cause == Cause::unlikelyLength || cause == Cause::phaseOrder;
         if (isQuestion) {
             next.title = cause == Cause::projectorSize ? tr("Has the projector %1 × %2 pixels?")
                                                              .arg(result.solved.projector.size.width)
                                                              .arg(result.solved.projector.size.height)
-                                                       : tr("Are these lengths right?");
+                         : cause == Cause::phaseOrder ? tr("Does the projector hang upside down?")
+                                                      : tr("Are these lengths right?");
             next.button = tr("Yes, use this calibration");
         }
         const bool isHelpedByPose = cause != Cause::clipped && !isQuestion;
