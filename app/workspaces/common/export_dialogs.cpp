@@ -1,5 +1,7 @@
 #include "app/workspaces/common/export_dialogs.h"
 
+#include <cmath>
+
 #include <QButtonGroup>
 #include <QDialog>
 #include <QDialogButtonBox>
@@ -22,7 +24,7 @@ namespace {
 const QString kFolderKey = QStringLiteral("export/folder");
 
 QString lastFolder(const Settings& settings) {
-    const QString kept = settings.value(kFolderKey).toString();
+    QString kept = settings.value(kFolderKey).toString();
     if (!kept.isEmpty() && QDir(kept).exists()) return kept;
     const QString documents = QStandardPaths::writableLocation(QStandardPaths::DocumentsLocation);
     return QDir(documents).exists() ? documents : QDir::homePath();
@@ -164,7 +166,7 @@ void askPicture(QWidget* parent, const PictureStyle& start, double ratio, const 
                 std::function<void(const PictureStyle&)> chosen) {
     const QString id = QStringLiteral("export.picture");
     const Asking asking = makeAsking(parent, id, QObject::tr("Export a picture"), QObject::tr("Choose a file..."));
-    const QSize asView(1920, std::max(64, static_cast<int>(1920.0 / ratio + 0.5)));
+    const QSize asView(1920, std::max(64, static_cast<int>(std::lround(1920.0 / ratio))));
     PictureStyle style = start;
     if (!style.size.isValid() || style.size.isEmpty()) style.size = asView;
     auto* form = new StyleForm(id, style,
