@@ -98,7 +98,7 @@ bool isNamedBefore(const std::filesystem::path& one, const std::filesystem::path
 std::vector<std::filesystem::path> imagesIn(const std::filesystem::path& folder) {
     std::vector<std::filesystem::path> images = entriesOf(folder);
     std::erase_if(images, [](const auto& file) {
-        std::error_code ignored; // a link that leads nowhere is told when it is read
+        std::error_code ignored; // a broken link is reported when the file is read
         return !isImageName(file) || std::filesystem::is_directory(file, ignored);
     });
     if (images.empty())

@@ -34,12 +34,12 @@ private:
     [[nodiscard]] bool isInk(double x, double y) const noexcept;
     [[nodiscard]] bool isMarkerInk(const Marker& marker, double x, double y) const noexcept;
 
-    CalibrationBoard board_;
-    [[nodiscard]] std::size_t placeOf(int column, int row) const { // of a square
+    [[nodiscard]] std::size_t placeOf(int column, int row) const { // of a square in markerOfSquare_
         return static_cast<std::size_t>(row) * static_cast<std::size_t>(board_.columns) +
                static_cast<std::size_t>(column);
     }
 
+    CalibrationBoard board_;
     cv::Rect2d page_, points_;
     int markerCells_ = 6; ///< a side, with the border
     std::vector<Marker> markers_;

@@ -8,7 +8,7 @@
 
 namespace lumorph::studio {
 
-/// What the watch of the running show says, in few words. A plain value; without words nobody watches.
+/// State of the watch of the running show, as the status line shows it. A plain value; empty words: no watch is on.
 struct WatchStand {
     enum class How { unsure, good, alarm };
     QString words;
@@ -17,7 +17,7 @@ struct WatchStand {
     bool operator==(const WatchStand&) const = default;
 };
 
-/// Where the watch says it, for all windows. Lives in the window's thread.
+/// Publishes the state of the watch to the status line. Lives in the window's thread.
 class WatchBoard : public QObject {
     Q_OBJECT
 public:
@@ -30,7 +30,7 @@ public:
 
 signals:
     void changed();
-    void checkWanted(); ///< of the room, by whoever has read it
+    void checkWanted(); ///< the user has clicked the state: a check of the room is to be opened
 
 private:
     WatchStand stand_;
