@@ -126,6 +126,12 @@ nlohmann::json stateJson(const State& state) {
     return levels;
 }
 
+nlohmann::json placementJson(const Placement& p) {
+    return {{"scale", p.scale},
+            {"yawDegrees", p.yaw.inDegrees()},
+            {"translation", {p.translation.x, p.translation.y, p.translation.z}}};
+}
+
 nlohmann::json resultJson(const Matcher& matcher, const Result& result, const MatchArguments& arguments) {
     const double volume = matcher.field.frame.voxelVolume();
     nlohmann::json actuators = nlohmann::json::array();
@@ -158,11 +164,12 @@ nlohmann::json resultJson(const Matcher& matcher, const Result& result, const Ma
     }
     if (result.placement) {
         const Placement& p = result.placement->placement;
-        json["placement"] = {{"scale", p.scale},
-                             {"yawDegrees", p.yaw.inDegrees()},
-                             {"translation", {p.translation.x, p.translation.y, p.translation.z}},
-                             {"iouAtFit", result.placement->iouAtFit},
-                             {"placementsSeen", result.placement->placementsSeen}};
+        json["placement"] = placementJson(p);
+        json["placement"]["iouAtFit"] = result.placement->iouAtFit;
+        json["placement"]["placementsSeen"] = result.placement->placementsSeen;
+        json["alternatives"] = nlohmann::json::array();
+        for (const PlacementCandidate& one : result.placement->alternatives)
+            json["alternatives"].push_back({{"iou", one.iou}, {"placement", placementJson(one.placement)}});
     }
     return json;
 }

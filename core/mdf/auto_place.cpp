@@ -23,6 +23,7 @@ public:
         : field_(field), coverage_(coverage), voting_(voting), target_(target), options_(options), progress_(progress),
           refiner_(coverage), box_(boundingBox(target.mesh.positions)), volume_(std::abs(signedVolume(target.mesh))) {
         fitScale_ = fitPlacement(field, box_).scale;
+        if (!target.closed) volume_ = volumeAtFit();
     }
 
     AutoPlacement run() {
@@ -36,26 +37,42 @@ public:
                     fitPlacement(field_, box_, Angle::radians(2.0 * std::numbers::pi * i / options_.yaws));
                 start = shrunk(start, share);
                 starts.emplace_back(scoreOf(poseOf(start)), poseOf(start));
-                progress_.report(done_ = 0.4 * (i + 1) / options_.yaws, "trying headings");
+                progress_.report(done_ = 0.2 * (i + 1) / options_.yaws, "trying headings");
             }
+        const std::vector<Box> reaches = reachesOf();
+        for (std::size_t k = 0; k < reaches.size(); ++k) {
+            for (const Placement& start : startsOver(reaches[k]))
+                starts.emplace_back(scoreOf(poseOf(start)), poseOf(start));
+            progress_.report(done_ = 0.2 + 0.2 * static_cast<double>(k + 1) / static_cast<double>(reaches.size()),
+                             "trying what each actuator reaches");
+        }
         std::stable_sort(starts.begin(), starts.end(), [](const auto& a, const auto& b) { return a.first > b.first; });
         constexpr std::size_t kClimbs = 3;
-        double best = -1.0;
-        Pose bestPose{};
-        for (std::size_t k = 0; k < std::min(kClimbs, starts.size()); ++k) {
-            auto [score, pose] = starts[k];
+        std::vector<std::pair<double, Pose>> ends;
+        std::vector<Pose> climbed;
+        for (const auto& [startScore, start] : starts) {
+            if (startScore < 0.0 || climbed.size() == kClimbs) break;
+            if (std::ranges::any_of(climbed, [&](const Pose& other) { return areAlike(start, other); })) continue;
+            climbed.push_back(start);
+            double score = startScore;
+            Pose pose = start;
             climb(pose, score);
-            if (score > best) {
-                best = score;
-                bestPose = pose;
-            }
-            progress_.report(done_ = 0.4 + 0.6 * static_cast<double>(k + 1) / kClimbs, "improving the placement");
+            ends.emplace_back(score, pose);
+            progress_.report(done_ = 0.4 + 0.6 * static_cast<double>(climbed.size()) / kClimbs,
+                             "improving the placement");
         }
-        if (best < 0.0)
+        if (ends.empty())
             throw InvalidInput("target", "no placement shows enough of it: it is thinner than a voxel or has no volume",
                                "give a solid target, or build the field with a higher resolution");
-        result.placement = placementOf(bestPose);
-        result.iou = scoreOf(bestPose);
+        std::stable_sort(ends.begin(), ends.end(), [](const auto& a, const auto& b) { return a.first > b.first; });
+        std::vector<Pose> kept;
+        for (const auto& [score, pose] : ends) {
+            if (std::ranges::any_of(kept, [&](const Pose& other) { return areAlike(pose, other); })) continue;
+            kept.push_back(pose);
+            result.alternatives.push_back({placementOf(pose), score});
+        }
+        result.placement = placementOf(kept.front());
+        result.iou = scoreOf(kept.front());
         result.state = lastState_;
         result.placementsSeen = seen_;
         return result;
@@ -78,6 +95,75 @@ private:
         return p;
     }
 
+    /// Whether two starts lead to the same place, and two ends look the same.
+    [[nodiscard]] bool areAlike(const Pose& one, const Pose& other) const {
+        const double turn = std::remainder(one[kYaw] - other[kYaw], 2.0 * std::numbers::pi);
+        const double way = std::hypot(one[kX] - other[kX], one[kY] - other[kY], one[kZ] - other[kZ]);
+        return std::abs(turn) < 0.35 && std::abs(one[kLogScale] - other[kLogScale]) < 0.15 &&
+               way < 0.1 * std::exp(one[kLogScale]) * static_cast<double>(glm::length(box_.size()));
+    }
+
+    /// Around what each actuator can change, the largest first; a device with hundreds has many that are alike.
+    [[nodiscard]] std::vector<Box> reachesOf() const {
+        constexpr std::size_t kMost = 12;
+        std::vector<std::pair<std::size_t, Box>> reaches;
+        const auto width = static_cast<std::uint32_t>(field_.frame.dimensions.x);
+        for (const ActuatorField& actuator : field_.actuators) {
+            std::size_t count = 0;
+            glm::ivec3 low = field_.frame.dimensions;
+            glm::ivec3 high(-1);
+            for (const ActuatorField::Run& run : actuator.runs)
+                for (std::uint32_t i = 0; i < run.count; ++i) {
+                    if (actuator.ramps[run.firstRamp + i].v0 == kUnchanged) continue;
+                    const glm::ivec3 at(run.column % width, run.firstY + static_cast<int>(i), run.column / width);
+                    low = glm::min(low, at);
+                    high = glm::max(high, at);
+                    ++count;
+                }
+            if (count == 0) continue;
+            const auto size = static_cast<float>(field_.frame.voxelSize);
+            reaches.emplace_back(count, Box{field_.frame.origin + size * glm::vec3(low),
+                                            field_.frame.origin + size * glm::vec3(high + 1)});
+        }
+        std::stable_sort(reaches.begin(), reaches.end(),
+                         [](const auto& a, const auto& b) { return a.first > b.first; });
+        std::vector<Box> boxes;
+        for (const auto& [count, box] : reaches)
+            if (boxes.size() < kMost) boxes.push_back(box);
+        return boxes;
+    }
+
+    /// Standing in the middle of a reach: as large as it is across, and as large as fits into it.
+    [[nodiscard]] std::vector<Placement> startsOver(const Box& reach) const {
+        constexpr int kHeadings = 4;
+        std::vector<Placement> starts;
+        for (int i = 0; i < kHeadings; ++i) {
+            Placement start{1.0, Angle::radians(2.0 * std::numbers::pi * i / kHeadings), glm::vec3(0.0F)};
+            const Box turned = boundingBox(cornersOf(box_, start.deviceFromTarget()));
+            const glm::vec3 share = reach.size() / glm::max(turned.size(), glm::vec3(1e-12F));
+            const float across = std::min(share.x, share.z);
+            for (const float scale : {across, std::min(across, share.y)}) {
+                start.scale = std::clamp(static_cast<double>(scale), options_.minScale * fitScale_,
+                                         options_.maxScale * fitScale_);
+                const auto s = static_cast<float>(start.scale);
+                const glm::vec3 middle = s * turned.centre();
+                start.translation = {reach.centre().x - middle.x, reach.min.y - s * turned.min.y,
+                                     reach.centre().z - middle.z};
+                starts.push_back(start);
+            }
+        }
+        return starts;
+    }
+
+    /// Of a target whose triangles say nothing of it: at scale 1, by its voxels where it fits.
+    double volumeAtFit() {
+        const Placement placement = fitPlacement(field_, box_);
+        voxelizeTarget(field_.frame, {placed(target_.mesh, placement), false, {}}, voxelizer_, bits_,
+                       progress_.part(done_, done_));
+        bits_ &= coverage_.domain();
+        return static_cast<double>(bits_.count()) * field_.frame.voxelVolume() / std::pow(placement.scale, 3.0);
+    }
+
     /// IoU of the refined match, or -1 where the placement does not count.
     double scoreOf(const Pose& pose) {
         progress_.throwIfCancelled();
@@ -90,7 +176,7 @@ private:
         bits_ &= coverage_.domain();
         const double inside = static_cast<double>(bits_.count()) * field_.frame.voxelVolume();
         const double whole = volume_ * placement.scale * placement.scale * placement.scale;
-        if (target_.closed && inside < options_.minInside * whole) return -1.0;
+        if (!(inside > 0.0) || inside < options_.minInside * whole) return -1.0;
         voting_.match(bits_, votes_, workspace_);
         const Refinement refined = refiner_.refine(bits_, votes_.state(), Microseconds{5000}, clock_);
         lastState_ = refined.state;

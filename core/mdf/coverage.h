@@ -88,9 +88,10 @@ struct FitQuality {
     std::size_t unmatched = 0;  ///< wanted, not covered
     std::size_t overfilled = 0; ///< covered, not wanted
 
+    /// In [0, 1]; 0 where neither has a voxel, so that nothing fits better by leaving the device.
     [[nodiscard]] double iou() const noexcept {
         const std::size_t either = both + unmatched + overfilled;
-        return either == 0 ? 1.0 : static_cast<double>(both) / static_cast<double>(either);
+        return either == 0 ? 0.0 : static_cast<double>(both) / static_cast<double>(either);
     }
 };
 

@@ -2,7 +2,9 @@
 
 #include <cmath>
 #include <map>
+#include <span>
 #include <tuple>
+#include <utility>
 
 namespace lumorph::test {
 
@@ -112,14 +114,15 @@ Rig armRig() {
     return Rig(std::move(parts));
 }
 
-Rig lifterRig() {
+namespace {
+
+/// Boxes that slide up out of a base, an actuator each.
+Rig boxesOutOf(const char* name, TriangleMesh base, std::span<const glm::vec3> low, std::span<const glm::vec3> high) {
     RigParts parts;
-    parts.name = "lifter";
+    parts.name = name;
     parts.pathInside = true;
-    parts.restMesh = boxMesh({-0.01F, 0.0F, -0.01F}, {0.1003F, 0.0211F, 0.0702F});
-    const glm::vec3 low[] = {{0.0051F, 0.001F, 0.0052F}, {0.0303F, 0.0013F, 0.0154F}, {0.0707F, 0.0011F, 0.0103F}};
-    const glm::vec3 high[] = {{0.0459F, 0.0201F, 0.0501F}, {0.0655F, 0.0203F, 0.0403F}, {0.0908F, 0.0202F, 0.0606F}};
-    for (int k = 0; k < 3; ++k) {
+    parts.restMesh = std::move(base);
+    for (std::size_t k = 0; k < low.size(); ++k) {
         Actuator actuator = slide("box " + std::to_string(k), 0.025F + 0.006F * static_cast<float>(k));
         const TriangleMesh box = boxMesh(low[k], high[k]);
         for (std::size_t v = 0; v < box.positions.size(); ++v)
@@ -129,6 +132,20 @@ Rig lifterRig() {
         parts.actuators.push_back(std::move(actuator));
     }
     return Rig(std::move(parts));
+}
+
+} // namespace
+
+Rig lifterRig() {
+    const glm::vec3 low[] = {{0.0051F, 0.001F, 0.0052F}, {0.0303F, 0.0013F, 0.0154F}, {0.0707F, 0.0011F, 0.0103F}};
+    const glm::vec3 high[] = {{0.0459F, 0.0201F, 0.0501F}, {0.0655F, 0.0203F, 0.0403F}, {0.0908F, 0.0202F, 0.0606F}};
+    return boxesOutOf("lifter", boxMesh({-0.01F, 0.0F, -0.01F}, {0.1003F, 0.0211F, 0.0702F}), low, high);
+}
+
+Rig cornersRig() {
+    const glm::vec3 low[] = {{-0.0951F, 0.001F, -0.0952F}, {0.0603F, 0.0013F, 0.0554F}};
+    const glm::vec3 high[] = {{-0.0609F, 0.0201F, -0.0551F}, {0.0955F, 0.0203F, 0.0903F}};
+    return boxesOutOf("corners", boxMesh({-0.1F, 0.0F, -0.1F}, {0.1003F, 0.0211F, 0.1002F}), low, high);
 }
 
 } // namespace lumorph::test

@@ -11,6 +11,9 @@ namespace lumorph::test {
 /// above the box depends on all three. The solid holds its path.
 [[nodiscard]] Rig cushionRig();
 
+/// A plate whose middle never moves: two small boxes slide up out of opposite corners.
+[[nodiscard]] Rig cornersRig();
+
 /// A beam that is turned by three hinges one after the other; a body that sweeps through space, so
 /// the solid does not hold its path.
 [[nodiscard]] Rig armRig();

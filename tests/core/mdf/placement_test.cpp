@@ -106,6 +106,75 @@ TEST_F(PlacementTest, AutoPlaceFindsAMatchAtLeastAsGoodAsTheFit) {
     EXPECT_GT(found.placementsSeen, 36);
 }
 
+// In the middle, where a target fits, nothing of this device moves.
+TEST(AutoPlace, FindsThePlaceWhereADeviceMoves) {
+    const Rig rig = test::cornersRig();
+    BuildOptions built;
+    built.resolution = 28;
+    built.levels = 9;
+    built.samples = 30;
+    const Field field = buildField(rig, built);
+    const Coverage coverage(rig, field.frame, field.levels);
+    const Voting voting(field);
+    Refiner refiner(coverage);
+    SolidVoxelizer voxelizer;
+    const SteadyClock clock;
+    for (const glm::vec3 size : {glm::vec3(1.0F, 0.8F, 1.1F), glm::vec3(2.0F, 1.0F, 1.0F)}) {
+        const Target target = makeTarget(test::boxMesh({0, 0, 0}, size));
+        const AutoPlacement found = autoPlace(field, coverage, voting, target);
+        EXPECT_LT(found.iouAtFit, 0.2);
+        // Every place and size of a grid, turned by nothing and by a right angle.
+        double best = 0.0;
+        const Placement fit = fitPlacement(field, boundingBox(target.mesh.positions));
+        for (const double yaw : {0.0, 90.0})
+            for (const double share : {1.0, 0.7, 0.5, 0.35, 0.25, 0.18})
+                for (float x = -0.11F; x < 0.1F; x += 0.012F)
+                    for (float z = -0.11F; z < 0.1F; z += 0.012F) {
+                        const Placement at{share * fit.scale, Angle::degrees(yaw), {x, field.restSurface, z}};
+                        BitColumns bits;
+                        voxelizeTarget(field.frame, {placed(target.mesh, at), true, {}}, voxelizer, bits);
+                        bits &= coverage.domain();
+                        const double whole = size.x * size.y * size.z * std::pow(at.scale, 3.0);
+                        if (static_cast<double>(bits.count()) * field.frame.voxelVolume() < 0.9 * whole) continue;
+                        const Refinement refined =
+                            refiner.refine(bits, voting.match(bits).state(), Microseconds{0}, clock);
+                        best = std::max(best, refined.after.iou());
+                    }
+        std::printf("auto-place %.3f, the best of the grid %.3f, in the middle %.3f\n", found.iou, best,
+                    found.iouAtFit);
+        EXPECT_GT(best, 0.4);
+        EXPECT_GE(found.iou, 0.98 * best);
+        // Different places, the best first.
+        ASSERT_GE(found.alternatives.size(), 2U);
+        EXPECT_EQ(found.alternatives[0].placement, found.placement);
+        EXPECT_EQ(found.alternatives[0].iou, found.iou);
+        for (std::size_t k = 1; k < found.alternatives.size(); ++k) {
+            EXPECT_LE(found.alternatives[k].iou, found.alternatives[k - 1].iou);
+            EXPECT_NE(found.alternatives[k].placement, found.placement);
+        }
+    }
+}
+
+// An open one has no volume of its own that would have to stay inside.
+TEST_F(PlacementTest, AutoPlaceDoesNotTakeAnOpenTargetOutOfTheDevice) {
+    TriangleMesh mesh = test::boxMesh({0, 0, 0}, {1.0F, 0.8F, 0.9F}, 6);
+    std::erase_if(mesh.triangles, [&](const glm::uvec3& t) { // the whole bottom
+        return std::max({mesh.positions[t.x].y, mesh.positions[t.y].y, mesh.positions[t.z].y}) < 0.01F;
+    });
+    const Target open = makeTarget(mesh);
+    ASSERT_FALSE(open.closed);
+    const AutoPlacement found = autoPlace(field_, coverage_, voting_, open);
+    EXPECT_LT(found.iou, 0.999);
+    EXPECT_GE(found.iou, found.iouAtFit);
+    SolidVoxelizer voxelizer;
+    BitColumns bits;
+    voxelizeTarget(field_.frame, {placed(open.mesh, found.placement), false, {}}, voxelizer, bits);
+    bits &= coverage_.domain();
+    EXPECT_GT(static_cast<double>(bits.count()) * field_.frame.voxelVolume(),
+              0.5 * 1.0 * 0.8 * 0.9 * std::pow(found.placement.scale, 3.0));
+    EXPECT_EQ(compareVolumes(BitColumns(field_.frame.dimensions), BitColumns(field_.frame.dimensions)).iou(), 0.0);
+}
+
 TEST_F(PlacementTest, AutoPlaceKeepsTheScaleAndTheShareThatItIsGiven) {
     const Target target = makeTarget(test::boxMesh({0, 0, 0}, {1.0F, 0.8F, 0.9F}));
     const double volume = 1.0 * 0.8 * 0.9;
