@@ -129,6 +129,7 @@ nlohmann::json stateJson(const State& state) {
 nlohmann::json placementJson(const Placement& p) {
     return {{"scale", p.scale},
             {"yawDegrees", p.yaw.inDegrees()},
+            {"orientation", {p.orientation.x, p.orientation.y, p.orientation.z, p.orientation.w}},
             {"translation", {p.translation.x, p.translation.y, p.translation.z}}};
 }
 
@@ -284,7 +285,7 @@ void addMatchCommand(CLI::App& app, Session& session) {
         ->required();
     command->add_flag("--fit", a->target.fit, "Largest scale inside the frame, centred, standing on the rest surface");
     CLI::Option* place =
-        command->add_flag("--auto-place", a->autoPlace, "Search heading, scale and position for the best IoU");
+        command->add_flag("--auto-place", a->autoPlace, "Search orientation, scale and position for the best IoU");
     place->excludes("--fit");
     command->add_option("--method", a->method, "voting or refined")
         ->check(CLI::IsMember({"voting", "refined"}))

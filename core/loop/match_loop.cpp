@@ -33,6 +33,7 @@ void requireFinite(const char* what, double value) {
 
 void checkPlacement(const Placement& placement) {
     requireFinite("yaw of the target", placement.yaw.inRadians());
+    requireFinite("orientation of the target", static_cast<double>(glm::length(placement.orientation)));
     for (int axis = 0; axis < 3; ++axis)
         requireFinite("position of the target", static_cast<double>(placement.translation[axis]));
     if (!(placement.scale > 0.0) || !std::isfinite(placement.scale))

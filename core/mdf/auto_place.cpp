@@ -2,207 +2,355 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cmath>
 #include <numbers>
 
+#include <glm/gtc/quaternion.hpp>
+#include <tbb/enumerable_thread_specific.h>
+#include <tbb/parallel_for.h>
+
 #include "core/base/error.h"
+#include "core/mdf/placement_scorer.h"
 #include "core/mdf/refine.h"
 
 namespace lumorph {
 
 namespace {
 
-/// A point of the search: heading in radians, logarithm of the scale, position in metres.
-using Pose = std::array<double, 5>;
-enum Axis : std::size_t { kYaw, kLogScale, kX, kY, kZ };
+constexpr std::size_t kCoarseClimbs = 24;
+constexpr std::size_t kFineLooks = 10;
+constexpr std::size_t kFineClimbs = 4;
+constexpr std::size_t kAlternatives = 3;
+constexpr double kSameLook = 0.7; ///< IoU of two placements' voxels from which on they look the same
+
+/// A point of the search: the middle of the target's box stays in place while it is turned and scaled.
+struct Pose {
+    glm::quat turn{1.0F, 0.0F, 0.0F, 0.0F};
+    double logScale = 0.0;
+    glm::dvec3 middle{0.0};
+};
+constexpr std::size_t kAxes = 7;
+/// Steps of the pattern search: turns about x, y and z (radians), logarithm of the scale, along x, y and z (metres).
+using Steps = std::array<double, kAxes>;
+
+struct Scored {
+    double score = -1.0; ///< below 0: does not count
+    Pose pose;
+};
+
+bool byScore(const Scored& a, const Scored& b) { return a.score > b.score; }
+
+Pose stepped(Pose pose, std::size_t axis, double by) {
+    if (axis < 3) {
+        glm::vec3 about(0.0F);
+        about[static_cast<int>(axis)] = 1.0F;
+        pose.turn = glm::normalize(glm::angleAxis(static_cast<float>(by), about) * pose.turn);
+    } else if (axis == 3) {
+        pose.logScale += by;
+    } else {
+        pose.middle[static_cast<int>(axis) - 4] += by;
+    }
+    return pose;
+}
+
+double angleBetween(const glm::quat& a, const glm::quat& b) {
+    return 2.0 * std::acos(std::min(1.0, std::abs(static_cast<double>(glm::dot(a, b)))));
+}
+
+/// All that take the axes to axes, then `count` spread evenly (M. Alexa, "Super-Fibonacci Spirals: Fast,
+/// Low-Discrepancy Sampling of SO(3)", CVPR 2022).
+std::vector<glm::quat> orientations(int count) {
+    std::vector<glm::quat> all;
+    const auto add = [&](const glm::quat& turn) {
+        if (std::ranges::none_of(all, [&](const glm::quat& other) { return angleBetween(turn, other) < 0.05; }))
+            all.push_back(turn);
+    };
+    constexpr auto kQuarter = static_cast<float>(0.5 * std::numbers::pi);
+    for (int up = 0; up < 6; ++up)
+        for (int heading = 0; heading < 4; ++heading) {
+            const glm::vec3 about = up < 4 ? glm::vec3(1, 0, 0) : glm::vec3(0, 0, 1);
+            const int quarters = up < 4 ? up : 2 * (up - 4) + 1;
+            add(glm::angleAxis(kQuarter * static_cast<float>(heading), glm::vec3(0, 1, 0)) *
+                glm::angleAxis(kQuarter * static_cast<float>(quarters), about));
+        }
+    constexpr int kHeadings = 12; // upright, as most models are made
+    for (int k = 0; k < kHeadings; ++k)
+        add(glm::angleAxis(static_cast<float>(2.0 * std::numbers::pi * k / kHeadings), glm::vec3(0, 1, 0)));
+    constexpr double kPsi = 1.533751168755204288; // the real root of x^4 = x + 4
+    for (int k = 0; k < count; ++k) {
+        const double s = k + 0.5;
+        const double r = std::sqrt(s / count), R = std::sqrt(1.0 - s / count);
+        const double alpha = 2.0 * std::numbers::pi * s / std::numbers::sqrt2;
+        const double beta = 2.0 * std::numbers::pi * s / kPsi;
+        add(glm::quat(static_cast<float>(R * std::cos(beta)), static_cast<float>(r * std::sin(alpha)),
+                      static_cast<float>(r * std::cos(alpha)), static_cast<float>(R * std::sin(beta))));
+    }
+    return all;
+}
 
 class Placer {
 public:
     Placer(const Field& field, const Coverage& coverage, const Voting& voting, const Target& target,
            const AutoPlaceOptions& options, const Progress& progress)
         : field_(field), coverage_(coverage), voting_(voting), target_(target), options_(options), progress_(progress),
-          refiner_(coverage), box_(boundingBox(target.mesh.positions)), volume_(std::abs(signedVolume(target.mesh))) {
-        fitScale_ = fitPlacement(field, box_).scale;
-        if (!target.closed) volume_ = volumeAtFit();
-    }
+          grid_(target, progress.part(0.0, 0.1)), scorer_(coverage, progress.part(0.1, 0.15)) {}
 
     AutoPlacement run() {
-        const double fitIou = scoreOf(poseOf(fitPlacement(field_, box_)));
-        AutoPlacement result;
-        result.iouAtFit = std::max(0.0, fitIou);
-        std::vector<std::pair<double, Pose>> starts{{fitIou, poseOf(fitPlacement(field_, box_))}};
-        for (int i = 0; i < options_.yaws; ++i)
-            for (const double share : {1.0, 0.8, 0.65}) {
-                Placement start =
-                    fitPlacement(field_, box_, Angle::radians(2.0 * std::numbers::pi * i / options_.yaws));
-                start = shrunk(start, share);
-                starts.emplace_back(scoreOf(poseOf(start)), poseOf(start));
-                progress_.report(done_ = 0.2 * (i + 1) / options_.yaws, "trying headings");
-            }
-        const std::vector<Box> reaches = reachesOf();
-        for (std::size_t k = 0; k < reaches.size(); ++k) {
-            for (const Placement& start : startsOver(reaches[k]))
-                starts.emplace_back(scoreOf(poseOf(start)), poseOf(start));
-            progress_.report(done_ = 0.2 + 0.2 * static_cast<double>(k + 1) / static_cast<double>(reaches.size()),
-                             "trying what each actuator reaches");
-        }
-        std::stable_sort(starts.begin(), starts.end(), [](const auto& a, const auto& b) { return a.first > b.first; });
-        constexpr std::size_t kClimbs = 3;
-        std::vector<std::pair<double, Pose>> ends;
-        std::vector<Pose> climbed;
-        for (const auto& [startScore, start] : starts) {
-            if (startScore < 0.0 || climbed.size() == kClimbs) break;
-            if (std::ranges::any_of(climbed, [&](const Pose& other) { return areAlike(start, other); })) continue;
-            climbed.push_back(start);
-            double score = startScore;
-            Pose pose = start;
-            climb(pose, score);
-            ends.emplace_back(score, pose);
-            progress_.report(done_ = 0.4 + 0.6 * static_cast<double>(climbed.size()) / kClimbs,
-                             "improving the placement");
-        }
-        if (ends.empty())
-            throw InvalidInput("target", "no placement shows enough of it: it is thinner than a voxel or has no volume",
-                               "give a solid target, or build the field with a higher resolution");
-        std::stable_sort(ends.begin(), ends.end(), [](const auto& a, const auto& b) { return a.first > b.first; });
-        std::vector<Pose> kept;
-        for (const auto& [score, pose] : ends) {
-            if (std::ranges::any_of(kept, [&](const Pose& other) { return areAlike(pose, other); })) continue;
-            kept.push_back(pose);
-            result.alternatives.push_back({placementOf(pose), score});
-        }
-        result.placement = placementOf(kept.front());
-        result.iou = scoreOf(kept.front());
-        result.state = lastState_;
-        result.placementsSeen = seen_;
-        return result;
+        const Pose fit = poseOf(fitPlacement(field_, grid_.box()));
+        std::vector<Scored> found = distinct(coarseStarts(fit), kCoarseClimbs);
+        const double coarse = scorer_.voxelSize();
+        climbAll(found, {0.2, 0.2, 0.2, 0.12, 2.0 * coarse, coarse, 2.0 * coarse}, 3, 0.5,
+                 [this](const Pose& pose) { return coarseScore(pose); });
+        found = distinct(std::move(found), kFineLooks);
+        found.push_back({0.0, fit});
+        found.push_back({0.0, poseOf({})}); // a shape of the device itself, as it stands
+        scoreAll(found, 0.55);
+        found = distinct(std::move(found), kFineClimbs);
+        const double fine = field_.frame.voxelSize;
+        climbAll(found, {0.06, 0.06, 0.06, 0.05, 2.0 * fine, 2.0 * fine, 2.0 * fine}, 3, 0.6,
+                 [this](const Pose& pose) { return fineScore(pose); });
+        found.push_back({0.0, fit});
+        return chosen(found);
     }
 
 private:
-    [[nodiscard]] static Pose poseOf(const Placement& p) {
-        return {p.yaw.inRadians(), std::log(p.scale), static_cast<double>(p.translation.x),
-                static_cast<double>(p.translation.y), static_cast<double>(p.translation.z)};
+    /// For one thread.
+    struct Worker {
+        explicit Worker(const Coverage& coverage) : refiner(coverage) {}
+        PlacementScorer::Workspace coarse;
+        Refiner refiner;
+        Voting::Workspace voting;
+        Votes votes;
+        SolidVoxelizer voxelizer;
+        BitColumns bits;
+    };
+
+    [[nodiscard]] Pose poseOf(const Placement& placement) const {
+        return {placement.rotation(), std::log(placement.scale),
+                glm::dvec3(glm::vec3(placement.deviceFromTarget() * glm::vec4(grid_.box().centre(), 1.0F)))};
     }
-    [[nodiscard]] static Placement placementOf(const Pose& pose) {
-        return {std::exp(pose[kLogScale]), Angle::radians(pose[kYaw]),
-                glm::vec3(static_cast<float>(pose[kX]), static_cast<float>(pose[kY]), static_cast<float>(pose[kZ]))};
-    }
-    /// Smaller about the point it stands on.
-    [[nodiscard]] Placement shrunk(Placement p, double share) const {
-        const glm::vec3 foot(field_.frame.box().centre().x, field_.restSurface, field_.frame.box().centre().z);
-        p.scale *= share;
-        p.translation = foot + static_cast<float>(share) * (p.translation - foot);
-        return p;
+    [[nodiscard]] Placement placementOf(const Pose& pose) const {
+        Placement placement{std::exp(pose.logScale), {}, glm::vec3(0.0F), pose.turn};
+        placement.translation = glm::vec3(
+            pose.middle - glm::dvec3(glm::vec3(placement.deviceFromTarget() * glm::vec4(grid_.box().centre(), 1.0F))));
+        return placement;
     }
 
-    /// Whether two starts lead to the same place, and two ends look the same.
-    [[nodiscard]] bool areAlike(const Pose& one, const Pose& other) const {
-        const double turn = std::remainder(one[kYaw] - other[kYaw], 2.0 * std::numbers::pi);
-        const double way = std::hypot(one[kX] - other[kX], one[kY] - other[kY], one[kZ] - other[kZ]);
-        return std::abs(turn) < 0.35 && std::abs(one[kLogScale] - other[kLogScale]) < 0.15 &&
-               way < 0.1 * std::exp(one[kLogScale]) * static_cast<double>(glm::length(box_.size()));
+    /// Box around the target, turned, at scale 1.
+    [[nodiscard]] Box extentOf(const glm::quat& turn) const {
+        Box box;
+        for (const glm::vec3& corner : grid_.hull()) box.include(turn * (corner - grid_.box().centre()));
+        return box;
     }
 
-    /// Around what each actuator can change, the largest first; a device with hundreds has many that are alike.
-    [[nodiscard]] std::vector<Box> reachesOf() const {
-        constexpr std::size_t kMost = 12;
-        std::vector<std::pair<std::size_t, Box>> reaches;
-        const auto width = static_cast<std::uint32_t>(field_.frame.dimensions.x);
-        for (const ActuatorField& actuator : field_.actuators) {
-            std::size_t count = 0;
-            glm::ivec3 low = field_.frame.dimensions;
-            glm::ivec3 high(-1);
-            for (const ActuatorField::Run& run : actuator.runs)
-                for (std::uint32_t i = 0; i < run.count; ++i) {
-                    if (actuator.ramps[run.firstRamp + i].v0 == kUnchanged) continue;
-                    const glm::ivec3 at(run.column % width, run.firstY + static_cast<int>(i), run.column / width);
-                    low = glm::min(low, at);
-                    high = glm::max(high, at);
-                    ++count;
-                }
-            if (count == 0) continue;
-            const auto size = static_cast<float>(field_.frame.voxelSize);
-            reaches.emplace_back(count, Box{field_.frame.origin + size * glm::vec3(low),
-                                            field_.frame.origin + size * glm::vec3(high + 1)});
+    /// The scale at which the target, turned as it is, just fits the frame above the rest surface.
+    [[nodiscard]] double fitScale(const Box& extent) const {
+        const Box frame = field_.frame.box();
+        const glm::vec3 room(frame.size().x, frame.max.y - field_.restSurface, frame.size().z);
+        const glm::vec3 share = room / glm::max(extent.size(), glm::vec3(1e-12F));
+        return static_cast<double>(std::min({share.x, share.y, share.z}));
+    }
+
+    /// Whether so much of the target stays where it counts. With a little room where only samples are looked at.
+    [[nodiscard]] bool counts(const Pose& pose) const {
+        const Box extent = extentOf(pose.turn);
+        const double relative = std::exp(pose.logScale) / fitScale(extent);
+        constexpr double kSlack = 1e-6;
+        if (relative < options_.minScale * (1.0 - kSlack) || relative > options_.maxScale * (1.0 + kSlack))
+            return false;
+        const glm::mat4 deviceFromTarget = placementOf(pose).deviceFromTarget();
+        const Box frame = field_.frame.box();
+        std::size_t inFrame = 0;
+        for (const glm::vec3& sample : grid_.samples()) {
+            const glm::vec3 p(deviceFromTarget * glm::vec4(sample, 1.0F));
+            if (p.x > frame.min.x && p.x < frame.max.x && p.z > frame.min.z && p.z < frame.max.z && p.y < frame.max.y)
+                ++inFrame;
         }
-        std::stable_sort(reaches.begin(), reaches.end(),
-                         [](const auto& a, const auto& b) { return a.first > b.first; });
-        std::vector<Box> boxes;
-        for (const auto& [count, box] : reaches)
-            if (boxes.size() < kMost) boxes.push_back(box);
-        return boxes;
+        return static_cast<double>(inFrame) >= options_.minInFrame * static_cast<double>(grid_.samples().size());
     }
 
-    /// Standing in the middle of a reach: as large as it is across, and as large as fits into it.
-    [[nodiscard]] std::vector<Placement> startsOver(const Box& reach) const {
-        constexpr int kHeadings = 4;
-        std::vector<Placement> starts;
-        for (int i = 0; i < kHeadings; ++i) {
-            Placement start{1.0, Angle::radians(2.0 * std::numbers::pi * i / kHeadings), glm::vec3(0.0F)};
-            const Box turned = boundingBox(cornersOf(box_, start.deviceFromTarget()));
-            const glm::vec3 share = reach.size() / glm::max(turned.size(), glm::vec3(1e-12F));
-            const float across = std::min(share.x, share.z);
-            for (const float scale : {across, std::min(across, share.y)}) {
-                start.scale = std::clamp(static_cast<double>(scale), options_.minScale * fitScale_,
-                                         options_.maxScale * fitScale_);
-                const auto s = static_cast<float>(start.scale);
-                const glm::vec3 middle = s * turned.centre();
-                start.translation = {reach.centre().x - middle.x, reach.min.y - s * turned.min.y,
-                                     reach.centre().z - middle.z};
-                starts.push_back(start);
+    [[nodiscard]] bool enoughInside(std::size_t voxels, double voxelVolume, const Pose& pose, double volume) const {
+        return static_cast<double>(voxels) * voxelVolume >= options_.minInside * volume * std::exp(3.0 * pose.logScale);
+    }
+
+    double coarseScore(const Pose& pose) {
+        progress_.throwIfCancelled();
+        ++seen_;
+        if (!counts(pose)) return -1.0;
+        Worker& worker = workers_.local();
+        const double score = scorer_.score(grid_, placementOf(pose).deviceFromTarget(), worker.coarse);
+        return enoughInside(worker.coarse.wanted.count(), std::pow(scorer_.voxelSize(), 3.0), pose, grid_.volume())
+                   ? score
+                   : -1.0;
+    }
+
+    double fineScore(const Pose& pose) {
+        progress_.throwIfCancelled();
+        ++seen_;
+        if (!counts(pose)) return -1.0;
+        Worker& worker = workers_.local();
+        grid_.lookUp(field_.frame, placementOf(pose).deviceFromTarget(), worker.bits);
+        worker.bits &= coverage_.domain();
+        constexpr double kMargin = 1.01; // the grid's voxels are not quite the mesh's
+        if (!enoughInside(worker.bits.count(), field_.frame.voxelVolume(), pose, kMargin * grid_.volume())) return -1.0;
+        voting_.match(worker.bits, worker.votes, worker.voting);
+        return worker.refiner.refine(worker.bits, worker.votes.state(), Microseconds{2500}, clock_).after.iou();
+    }
+
+    std::vector<Scored> coarseStarts(const Pose& fit) {
+        const std::vector<glm::quat> turns = orientations(options_.orientations);
+        std::vector<std::vector<Scored>> starts(turns.size());
+        std::atomic<int> done{0};
+        tbb::parallel_for(std::size_t{0}, turns.size(), [&](std::size_t k) {
+            for (const Pose& start : startsAt(turns[k])) starts[k].push_back({coarseScore(start), start});
+            tell(0.15, 0.4, ++done, static_cast<int>(turns.size()), "trying orientations");
+        });
+        std::vector<Scored> all{{coarseScore(fit), fit}};
+        for (const std::vector<Scored>& some : starts) all.insert(all.end(), some.begin(), some.end());
+        return all;
+    }
+
+    /// Over everything that moves and over each actuator's reach: as large as that is across, as large as fits into
+    /// it, and between; standing on it, or sunk in until the top is as high as it rises.
+    [[nodiscard]] std::vector<Pose> startsAt(const glm::quat& turn) const {
+        const Box extent = extentOf(turn);
+        const glm::vec3 size = glm::max(extent.size(), glm::vec3(1e-12F));
+        const double fits = fitScale(extent);
+        std::vector<Pose> starts;
+        for (const Box& reach : scorer_.reaches()) {
+            const glm::vec3 share = reach.size() / size;
+            const auto across = static_cast<double>(std::min(share.x, share.z));
+            const double within = std::min(across, static_cast<double>(share.y));
+            double last = 0.0;
+            for (const double wanted : {across, 0.75 * across, std::sqrt(across * within), within}) {
+                const double scale = std::clamp(wanted, options_.minScale * fits, options_.maxScale * fits);
+                if (std::abs(scale / std::max(last, 1e-12) - 1.0) < 0.05) continue;
+                last = scale;
+                const auto s = static_cast<float>(scale);
+                const glm::vec3 centre = s * extent.centre(); // from the middle of the target's own box
+                const float stands = reach.min.y - s * extent.min.y, tops = reach.max.y - s * extent.max.y;
+                starts.push_back(
+                    {turn, std::log(scale), {reach.centre().x - centre.x, stands, reach.centre().z - centre.z}});
+                if (tops >= stands - 0.1F * reach.size().y) continue;
+                starts.push_back(starts.back());
+                starts.back().middle.y = static_cast<double>(tops);
+                starts.push_back(starts.back());
+                starts.back().middle.y = 0.5 * static_cast<double>(stands + tops);
             }
         }
         return starts;
     }
 
-    /// Of a target whose triangles say nothing of it: at scale 1, by its voxels where it fits.
-    double volumeAtFit() {
-        const Placement placement = fitPlacement(field_, box_);
-        voxelizeTarget(field_.frame, {placed(target_.mesh, placement), false, {}}, voxelizer_, bits_,
-                       progress_.part(done_, done_));
-        bits_ &= coverage_.domain();
-        return static_cast<double>(bits_.count()) * field_.frame.voxelVolume() / std::pow(placement.scale, 3.0);
+    /// Whether two starts lead to the same place.
+    [[nodiscard]] bool areAlike(const Pose& one, const Pose& other) const {
+        const double size = std::exp(one.logScale) * static_cast<double>(glm::length(grid_.box().size()));
+        return angleBetween(one.turn, other.turn) < 0.35 && std::abs(one.logScale - other.logScale) < 0.2 &&
+               glm::distance(one.middle, other.middle) < 0.12 * size;
     }
 
-    /// IoU of the refined match, or -1 where the placement does not count.
-    double scoreOf(const Pose& pose) {
-        progress_.throwIfCancelled();
-        ++seen_;
-        const Placement placement = placementOf(pose);
-        const double relative = placement.scale / fitScale_;
-        if (relative < options_.minScale || relative > options_.maxScale) return -1.0;
-        voxelizeTarget(field_.frame, {placed(target_.mesh, placement), target_.closed, {}}, voxelizer_, bits_,
-                       progress_.part(done_, done_));
-        bits_ &= coverage_.domain();
-        const double inside = static_cast<double>(bits_.count()) * field_.frame.voxelVolume();
-        const double whole = volume_ * placement.scale * placement.scale * placement.scale;
-        if (!(inside > 0.0) || inside < options_.minInside * whole) return -1.0;
-        voting_.match(bits_, votes_, workspace_);
-        const Refinement refined = refiner_.refine(bits_, votes_.state(), Microseconds{5000}, clock_);
-        lastState_ = refined.state;
-        return refined.after.iou();
+    /// The best of those that count, no two alike.
+    [[nodiscard]] std::vector<Scored> distinct(std::vector<Scored> all, std::size_t most) const {
+        std::ranges::stable_sort(all, byScore);
+        std::vector<Scored> kept;
+        for (const Scored& one : all) {
+            if (one.score < 0.0 || kept.size() == most) break;
+            if (std::ranges::none_of(kept, [&](const Scored& other) { return areAlike(one.pose, other.pose); }))
+                kept.push_back(one);
+        }
+        return kept;
     }
 
-    /// Pattern search: a step along each axis while that helps, then half the steps.
-    void climb(Pose& pose, double& score) {
-        const double voxel = field_.frame.voxelSize;
-        Pose steps{0.26, 0.15, 8.0 * voxel, 4.0 * voxel, 8.0 * voxel};
-        while (steps[kX] >= 0.25 * voxel) {
+    void scoreAll(std::vector<Scored>& all, double upTo) {
+        std::atomic<int> done{0};
+        tbb::parallel_for(std::size_t{0}, all.size(), [&](std::size_t k) {
+            all[k].score = fineScore(all[k].pose);
+            tell(0.5, upTo, ++done, static_cast<int>(all.size()), "comparing places");
+        });
+    }
+
+    /// Pattern searches from all: a step along each axis while that helps, then half the steps.
+    template <typename Score>
+    void climbAll(std::vector<Scored>& all, const Steps& steps, int halvings, double from, const Score& score) {
+        std::atomic<int> done{0};
+        tbb::parallel_for(std::size_t{0}, all.size(), [&](std::size_t k) {
+            climb(all[k], steps, halvings, score);
+            tell(from - 0.1, from < 0.55 ? from : 0.9, ++done, static_cast<int>(all.size()), "improving places");
+        });
+    }
+
+    template <typename Score> static void climb(Scored& at, Steps steps, int halvings, const Score& score) {
+        for (int round = 0; round <= halvings;) {
             bool moved = false;
-            for (std::size_t axis = 0; axis < pose.size(); ++axis)
+            for (std::size_t axis = 0; axis < kAxes; ++axis)
                 for (const double sign : {1.0, -1.0}) {
-                    Pose next = pose;
-                    next[axis] += sign * steps[axis];
-                    const double nextScore = scoreOf(next);
-                    if (nextScore <= score) continue;
-                    pose = next;
-                    score = nextScore;
+                    const Pose next = stepped(at.pose, axis, sign * steps[axis]);
+                    const double nextScore = score(next);
+                    if (nextScore <= at.score + 1e-4) continue;
+                    at = {nextScore, next};
                     moved = true;
                     break;
                 }
-            if (!moved)
-                for (double& step : steps) step *= 0.5;
+            if (moved) continue;
+            for (double& step : steps) step *= 0.5;
+            ++round;
         }
+    }
+
+    void tell(double from, double to, int done, int all, const char* what) {
+        progress_.throwIfCancelled();
+        progress_.report(from + (to - from) * done / all, what);
+    }
+
+    /// A candidate with the voxels of its mesh; an IoU below 0 where it does not count.
+    struct Final {
+        PlacementCandidate candidate;
+        BitColumns bits;
+    };
+
+    [[nodiscard]] Final finalOf(const Pose& pose) {
+        Worker& worker = workers_.local();
+        Final made{{placementOf(pose), {}, -1.0}, {}};
+        voxelizeTarget(field_.frame, {placed(target_.mesh, made.candidate.placement), target_.closed, {}},
+                       worker.voxelizer, made.bits, progress_.part(0.9, 0.9));
+        made.bits &= coverage_.domain();
+        const double volume = target_.closed ? std::abs(signedVolume(target_.mesh)) : grid_.volume();
+        if (made.bits.count() == 0 || !counts(pose) ||
+            !enoughInside(made.bits.count(), field_.frame.voxelVolume(), pose, volume))
+            return made;
+        voting_.match(made.bits, worker.votes, worker.voting);
+        const Refinement refined = worker.refiner.refine(made.bits, worker.votes.state(), Microseconds{20'000}, clock_);
+        made.candidate.state = refined.state;
+        made.candidate.iou = refined.after.iou();
+        return made;
+    }
+
+    /// The last of `found` is where the target fits.
+    [[nodiscard]] AutoPlacement chosen(const std::vector<Scored>& found) {
+        std::vector<Final> all(found.size());
+        tbb::parallel_for(std::size_t{0}, found.size(), [&](std::size_t k) { all[k] = finalOf(found[k].pose); });
+        AutoPlacement result;
+        result.iouAtFit = std::max(0.0, all.back().candidate.iou);
+        std::ranges::stable_sort(all, [](const Final& a, const Final& b) { return a.candidate.iou > b.candidate.iou; });
+        std::vector<const Final*> kept;
+        for (const Final& one : all) {
+            const auto looksLike = [&](const Final* other) {
+                return intersectionOverUnion(one.bits, other->bits) > kSameLook;
+            };
+            if (one.candidate.iou < 0.0 || kept.size() == kAlternatives || std::ranges::any_of(kept, looksLike))
+                continue;
+            kept.push_back(&one);
+            result.alternatives.push_back(one.candidate);
+        }
+        if (kept.empty())
+            throw InvalidInput("target", "no placement shows enough of it: it is thinner than a voxel or has no volume",
+                               "give a solid target, or build the field with a higher resolution");
+        result.placement = kept.front()->candidate.placement;
+        result.state = kept.front()->candidate.state;
+        result.iou = kept.front()->candidate.iou;
+        result.placementsSeen = seen_;
+        progress_.report(1.0, "improving places");
+        return result;
     }
 
     const Field& field_;
@@ -211,18 +359,11 @@ private:
     const Target& target_;
     const AutoPlaceOptions& options_;
     const Progress& progress_;
-    Refiner refiner_;
+    TargetGrid grid_;
+    PlacementScorer scorer_;
     SteadyClock clock_;
-    Box box_;
-    double volume_;
-    double fitScale_ = 1.0;
-    SolidVoxelizer voxelizer_;
-    BitColumns bits_;
-    Votes votes_;
-    Voting::Workspace workspace_;
-    State lastState_;
-    int seen_ = 0;
-    double done_ = 0.0; ///< of the progress
+    tbb::enumerable_thread_specific<Worker> workers_{[this] { return Worker(coverage_); }};
+    std::atomic<int> seen_{0};
 };
 
 } // namespace

@@ -10,16 +10,18 @@
 namespace lumorph {
 
 struct AutoPlaceOptions {
-    int yaws = 12;          ///< headings that the search starts from
-    double minScale = 0.15; ///< relative to the largest scale that fits; one flap may be all that moves
-    double maxScale = 1.5;
-    double minInside = 0.9; ///< share of the target's volume that must stay in the frame, outside the body; of an open
-                            ///< target of what is there where `fitPlacement` puts it
+    int orientations = 72; ///< spread evenly over all, beside those along the axes
+    /// Relative to the scale at which the target, turned as it is, just fits the frame above the rest surface.
+    double minScale = 0.15;  ///< one flap may be all that moves
+    double maxScale = 4.0;   ///< what is sunk into the device may be larger
+    double minInside = 0.5;  ///< share of the target's volume that must stay where the device could show it
+    double minInFrame = 0.9; ///< share that must not be cut off by the frame: what is sunk into the device is not
 };
 
 /// A place that a climb of the search ended at.
 struct PlacementCandidate {
     Placement placement;
+    State state;
     double iou = 0.0; ///< of the refined match there
 };
 
@@ -29,14 +31,15 @@ struct AutoPlacement {
     double iou = 0.0;      ///< of the refined match there
     double iouAtFit = 0.0; ///< of the refined match where `fitPlacement` puts it
     int placementsSeen = 0;
-    std::vector<PlacementCandidate> alternatives; ///< different ones, at most three, the best (`placement`) first
+    std::vector<PlacementCandidate> alternatives; ///< that look different, at most three, the best (`placement`) first
 };
 
-/// Searches heading, scale and position of a target for the best IoU of its refined match: coarse
-/// starts in the middle and over the reach of each actuator, over all headings and some scales, then a pattern search
-/// of the best different ones down to a quarter of a voxel. Placements that leave less than `minInside` of the target's
-/// volume where the device could show it do not count. Reports progress. Throws InvalidInput when none counts (a target
-/// thinner than a voxel), Cancelled.
+/// Searches orientation, scale and position of a target for the best IoU of its refined match. All orientations are
+/// tried over what the device reaches and over the reach of each actuator, by `PlacementScorer`; the best different
+/// ones are improved by a pattern search, coarsely, then with the field itself down to a quarter of a voxel. The time
+/// hardly depends on the target's triangles. Placements that leave less than `minInside` of the volume where the device
+/// could show it do not count. Reports progress, from several threads. Throws InvalidInput when none
+/// counts (a target thinner than a voxel), Cancelled.
 [[nodiscard]] AutoPlacement autoPlace(const Field& field, const Coverage& coverage, const Voting& voting,
                                       const Target& target, const AutoPlaceOptions& options = {},
                                       const Progress& progress = {});

@@ -7,6 +7,7 @@
 #include <tbb/parallel_for.h>
 
 #include "core/base/error.h"
+#include "core/mdf/level_gains.h"
 #include "core/mdf/refine.h"
 
 namespace lumorph {
@@ -14,45 +15,6 @@ namespace {
 
 constexpr Microseconds kCancelPause{20'000}; ///< so long is refined before looking whether the user wants it stopped
 constexpr std::size_t kMostSteps = 32;
-
-/// What a level of one actuator adds to the volume at rest, in voxels.
-struct LevelGain {
-    int covered = 0;
-    int both = 0;
-};
-
-/// The gains of all levels of all actuators for one target.
-using LevelGains = std::vector<std::vector<LevelGain>>;
-
-/// The joint state of the largest (both + sum of gains) / (either + ...), were each actuator's gain its own.
-State bestBySums(const LevelGains& gains, int both, int covered, int wanted) {
-    State state(gains.size());
-    double ratio = -1.0;
-    for (;;) {
-        const double aim = std::max(0.0, ratio);
-        int allBoth = both;
-        int allCovered = covered;
-        State next(gains.size());
-        for (std::size_t a = 0; a < gains.size(); ++a) {
-            double most = 0.0;
-            for (std::size_t level = 1; level < gains[a].size(); ++level) {
-                const LevelGain& gain = gains[a][level];
-                const double worth = gain.both - aim * (gain.covered - gain.both);
-                if (worth <= most) continue;
-                most = worth;
-                next[a].index = static_cast<int>(level);
-            }
-            const LevelGain& taken = gains[a][static_cast<std::size_t>(next[a].index)];
-            allBoth += taken.both;
-            allCovered += taken.covered;
-        }
-        const int either = allCovered + wanted - allBoth;
-        const double reached = either > 0 ? static_cast<double>(allBoth) / either : 0.0;
-        if (reached <= ratio) return state;
-        ratio = reached;
-        state = std::move(next);
-    }
-}
 
 VoxelFrame frameFor(const Rig& rig, const LibraryFitOptions& options) {
     const Box& box = options.space.empty() ? rig.reach() : options.space;
@@ -96,7 +58,7 @@ public:
         forEachTarget(progress, "matching targets", [&](std::size_t t) {
             Refiner refiner(coverage_);
             const auto wanted = static_cast<int>(wanted_[t].count());
-            refineFrom(refiner, t, bestBySums(gains_[t], restBoth_[t], restCovered_, wanted), fit_.targets[t],
+            refineFrom(refiner, t, bestBySums(gains_[t], restBoth_[t], restCovered_, wanted).state, fit_.targets[t],
                        progress);
         });
         sum(fit_);
@@ -153,8 +115,7 @@ private:
     /// Every level of every actuator, the others at rest, against all targets.
     void countGains(const Progress& progress) {
         const std::size_t actuators = coverage_.rig().actuatorCount();
-        const auto levels = static_cast<std::size_t>(coverage_.levels());
-        gains_.assign(wanted_.size(), LevelGains(actuators, std::vector<LevelGain>(levels)));
+        gains_.assign(wanted_.size(), LevelGains(actuators));
         BitColumns rest;
         CoverageScratch scratch;
         coverage_.covered(State(actuators), rest, scratch);
@@ -175,37 +136,14 @@ private:
     };
 
     Reached countGainsOf(std::size_t actuator) {
-        const Coverage::Window window = coverage_.window(coverage_.columnsMovedBy(actuator));
-        if (window.range.empty()) return {};
-        CoverageScratch scratch;
-        State state(coverage_.rig().actuatorCount());
-        const auto words = static_cast<std::size_t>(coverage_.body().wordsPerColumn());
-        std::vector<std::uint64_t> covered(window.range.size() * words);
-        Reached reached{window.range, covered};
-        std::vector<LevelGain> rest(wanted_.size());
-        for (int level = 0; level < coverage_.levels(); ++level) {
-            state[actuator] = Level{level};
-            coverage_.covered(state, window, covered, scratch);
-            for (std::size_t i = 0; i < covered.size(); ++i) reached.words[i] |= covered[i];
-            const auto all = static_cast<int>(countBits(covered));
-            for (std::size_t t = 0; t < wanted_.size(); ++t) {
-                const LevelGain now{all, countBoth(window.range, covered, wanted_[t])};
-                if (level == 0) rest[t] = now;
-                gains_[t][actuator][static_cast<std::size_t>(level)] = {now.covered - rest[t].covered,
-                                                                        now.both - rest[t].both};
-            }
+        const ActuatorLevels levels = levelsOf(coverage_, actuator);
+        Reached reached{levels.range, {}};
+        for (const std::vector<std::uint64_t>& words : levels.words) {
+            reached.words.resize(words.size());
+            for (std::size_t i = 0; i < words.size(); ++i) reached.words[i] |= words[i];
         }
+        for (std::size_t t = 0; t < wanted_.size(); ++t) lumorph::countGains(levels, wanted_[t], gains_[t][actuator]);
         return reached;
-    }
-
-    static int countBoth(const ColumnRange& range, std::span<const std::uint64_t> covered, const BitColumns& wanted) {
-        const auto words = static_cast<std::size_t>(wanted.wordsPerColumn());
-        const std::size_t count = static_cast<std::size_t>(range.width()) * words;
-        std::size_t both = 0;
-        for (int z = range.z0; z <= range.z1; ++z)
-            both += countBitsAnd(covered.subspan(static_cast<std::size_t>(z - range.z0) * count, count),
-                                 wanted.words().subspan(wanted.columnIndex(range.x0, z) * words, count));
-        return static_cast<int>(both);
     }
 
     /// What no actuator alone, at any level, covers of each target.

@@ -51,8 +51,7 @@ struct FitWithout {
 };
 
 /// Matches a rig to a library without a mechanical distance field. Each actuator's levels are looked at with the others
-/// at rest; where actuators share no voxel the best joint state follows from that exactly (the largest ratio of two
-/// sums, by Dinkelbach's iteration: W. Dinkelbach, "On nonlinear fractional programming", Management Science 13, 1967),
+/// at rest; where actuators share no voxel the best joint state follows from that exactly (`bestBySums`),
 /// and `Refiner` goes on from there with the true volume of the whole device. The same on any number of threads.
 /// Holds the rig and the targets' voxels; the library may go.
 class LibraryMatcher {

@@ -53,7 +53,12 @@ double shareBeyondFrame(const VoxelFrame& frame, const Target& target, const Bit
 glm::mat4 Placement::deviceFromTarget() const {
     glm::mat4 m = glm::translate(glm::mat4(1.0F), translation);
     m = glm::rotate(m, static_cast<float>(yaw.inRadians()), glm::vec3(0.0F, 1.0F, 0.0F));
+    if (orientation != glm::quat(1.0F, 0.0F, 0.0F, 0.0F)) m *= glm::mat4_cast(orientation);
     return glm::scale(m, glm::vec3(static_cast<float>(scale)));
+}
+
+glm::quat Placement::rotation() const {
+    return glm::angleAxis(static_cast<float>(yaw.inRadians()), glm::vec3(0.0F, 1.0F, 0.0F)) * orientation;
 }
 
 void placePoints(std::span<const glm::vec3> points, const glm::mat4& deviceFromTarget, std::vector<glm::vec3>& out) {
@@ -68,13 +73,14 @@ TriangleMesh placed(const TriangleMesh& mesh, const Placement& placement) {
     return result;
 }
 
-Placement fitPlacement(const Field& field, const Box& box, Angle yaw) {
-    return fitPlacement(field.frame, field.restSurface, box, yaw);
+Placement fitPlacement(const Field& field, const Box& box, Angle yaw, const glm::quat& orientation) {
+    return fitPlacement(field.frame, field.restSurface, box, yaw, orientation);
 }
 
-Placement fitPlacement(const VoxelFrame& voxels, float restSurface, const Box& box, Angle yaw) {
+Placement fitPlacement(const VoxelFrame& voxels, float restSurface, const Box& box, Angle yaw,
+                       const glm::quat& orientation) {
     Box turned;
-    Placement placement{1.0, yaw, glm::vec3(0.0F)};
+    Placement placement{1.0, yaw, glm::vec3(0.0F), orientation};
     const glm::mat4 turn = placement.deviceFromTarget();
     for (int corner = 0; corner < 8 && !box.empty(); ++corner)
         turned.include(

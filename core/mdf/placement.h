@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include <glm/gtc/quaternion.hpp>
 #include <glm/mat4x4.hpp>
 
 #include "core/base/progress.h"
@@ -42,10 +43,13 @@ void voxelizeTarget(const VoxelFrame& frame, const Target& target, SolidVoxelize
 /// Where a target stands: scaled and turned about its own origin, then moved; device coordinates.
 struct Placement {
     double scale = 1.0;
-    Angle yaw; ///< about +Y
+    Angle yaw; ///< heading about +Y, after `orientation`
     glm::vec3 translation{0.0F};
+    glm::quat orientation{1.0F, 0.0F, 0.0F, 0.0F}; ///< which side is up; a unit quaternion
 
     [[nodiscard]] glm::mat4 deviceFromTarget() const;
+    /// Heading and orientation in one.
+    [[nodiscard]] glm::quat rotation() const;
     bool operator==(const Placement&) const = default;
 };
 
@@ -55,10 +59,12 @@ void placePoints(std::span<const glm::vec3> points, const glm::mat4& deviceFromT
 /// The mesh with the placement applied.
 [[nodiscard]] TriangleMesh placed(const TriangleMesh& mesh, const Placement& placement);
 
-/// The largest uniform scale at which a box fits into the frame above the rest surface, centred in x
+/// The largest uniform scale at which a box, turned as said, fits into the frame above the rest surface, centred in x
 /// and z and standing on the rest surface. Throws InvalidInput for an empty or flat box, or a frame
 /// with no room above the rest surface.
-[[nodiscard]] Placement fitPlacement(const VoxelFrame& frame, float restSurface, const Box& box, Angle yaw = {});
-[[nodiscard]] Placement fitPlacement(const Field& field, const Box& box, Angle yaw = {});
+[[nodiscard]] Placement fitPlacement(const VoxelFrame& frame, float restSurface, const Box& box, Angle yaw = {},
+                                     const glm::quat& orientation = {1.0F, 0.0F, 0.0F, 0.0F});
+[[nodiscard]] Placement fitPlacement(const Field& field, const Box& box, Angle yaw = {},
+                                     const glm::quat& orientation = {1.0F, 0.0F, 0.0F, 0.0F});
 
 } // namespace lumorph

@@ -178,6 +178,12 @@ Placement readPlacement(JsonSection section) {
     std::vector<double> translation(3, 0.0);
     section.numbers("translation", translation, -kFar, kFar, 3, true);
     for (int axis = 0; axis < 3; ++axis) placement.translation[axis] = static_cast<float>(translation[axis]);
+    std::vector<double> turn{0.0, 0.0, 0.0, 1.0};
+    section.numbers("orientation", turn, -1.0, 1.0, 4, true);
+    const glm::dquat orientation(turn[3], turn[0], turn[1], turn[2]);
+    const double length = glm::length(orientation);
+    if (!(length > 0.5)) section.refuse("orientation", "is no rotation", "write a unit quaternion as x, y, z, w");
+    placement.orientation = glm::quat(std::abs(length - 1.0) < 1e-5 ? orientation : orientation / length);
     return placement;
 }
 
@@ -252,10 +258,12 @@ json documentOf(const Project& project) {
     document["animation"] = project.animation;
     document["strokes"] = project.strokes;
     const glm::vec3& t = project.placement.translation;
+    const glm::quat& q = project.placement.orientation;
     merge(document, "placement",
           {{"scale", project.placement.scale},
            {"yaw", project.placement.yaw.inRadians()},
-           {"translation", {t.x, t.y, t.z}}});
+           {"translation", {t.x, t.y, t.z}},
+           {"orientation", {q.x, q.y, q.z, q.w}}});
     merge(document, "matching",
           {{"driver", driverKey(project.matching.driver)},
            {"refined", project.matching.refined},

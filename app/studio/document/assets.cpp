@@ -109,12 +109,13 @@ Stamped<StudioState::TargetAsset> readTargetAsset(const fs::path& file, std::opt
     return {{file, readMatchTarget(file, animation, progress)}, stamp};
 }
 
-Placement placementThatFits(const Rig& rig, const MatchField* field, const Box& box, Angle yaw) {
-    if (field) return fitPlacement(field->field, box, yaw);
+Placement placementThatFits(const Rig& rig, const MatchField* field, const Box& box, Angle yaw,
+                            const glm::quat& orientation) {
+    if (field) return fitPlacement(field->field, box, yaw, orientation);
     Field room; // fitting asks for the frame and the rest surface alone
     room.frame = frameOf(rig.reach(), BuildOptions{}.resolution);
     room.restSurface = boundingBox(rig.restMesh().positions).max.y;
-    return fitPlacement(room, box, yaw);
+    return fitPlacement(room, box, yaw, orientation);
 }
 
 } // namespace lumorph::studio

@@ -56,6 +56,7 @@ template <class Asset> struct Stamped {
 
 /// Where a target of this box stands on the rig when it is as large as fits; for a rig without a field yet, as in a
 /// field of usual resolution. Throws InvalidInput when it cannot.
-[[nodiscard]] Placement placementThatFits(const Rig& rig, const MatchField* field, const Box& box, Angle yaw);
+[[nodiscard]] Placement placementThatFits(const Rig& rig, const MatchField* field, const Box& box, Angle yaw,
+                                          const glm::quat& orientation = {1.0F, 0.0F, 0.0F, 0.0F});
 
 } // namespace lumorph::studio

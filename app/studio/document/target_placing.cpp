@@ -22,7 +22,8 @@ Placement between(const Placement& from, const Placement& to, double share) {
     const auto part = static_cast<float>(share);
     const double turn = std::remainder(to.yaw.inRadians() - from.yaw.inRadians(), 2.0 * std::numbers::pi);
     return {from.scale * std::pow(to.scale / from.scale, share), Angle::radians(from.yaw.inRadians() + share * turn),
-            from.translation + part * (to.translation - from.translation)};
+            from.translation + part * (to.translation - from.translation),
+            glm::slerp(from.orientation, to.orientation, part)};
 }
 
 } // namespace
@@ -36,9 +37,7 @@ TargetPlacing::TargetPlacing(StudioDocument& document, JobSlots& jobs, Notices& 
 
 void TargetPlacing::expect() {
     const StudioState& state = document_.state();
-    // Each look at an open mesh takes tens of milliseconds, and the search needs hundreds of them.
-    const MatchTarget& opened = *state.target.target;
-    if (!placesNewTargets_ || opened.duration > 0.0 || !opened.solid.closed) return;
+    if (!placesNewTargets_ || state.target.target->duration > 0.0) return;
     unplaced_ = {state.target.target, state.placement};
     placeNew();
 }
@@ -47,8 +46,8 @@ void TargetPlacing::fit() {
     const StudioState& state = document_.state();
     if (!state.rig.rig || !state.target.target) return;
     try {
-        const Placement placement =
-            placementThatFits(*state.rig.rig, state.field.field.get(), state.target.target->box, state.placement.yaw);
+        const Placement placement = placementThatFits(*state.rig.rig, state.field.field.get(), state.target.target->box,
+                                                      state.placement.yaw, state.placement.orientation);
         document_.change(tr("Fit target"), [&](StudioState& next) { next.placement = placement; });
     } catch (const InvalidInput& error) {
         jobs_.fail("target", error, {{tr("Choose another file..."), [this] { emit targetWanted(); }}});
