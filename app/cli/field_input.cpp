@@ -10,6 +10,7 @@
 #include "core/geometry/gltf_reader.h"
 #include "core/geometry/mesh_file.h"
 #include "core/geometry/mesh_parsers.h"
+#include "core/mdf/relief.h"
 #include "core/voxels/nrrd.h"
 #include "core/voxels/surface.h"
 
@@ -75,16 +76,21 @@ TargetVoxels voxelsOf(const Session& session, const Field& field, const Target& 
                       const std::optional<Placement>& placement, int repeat) {
     TargetVoxels voxels{{}, placed(target.mesh, placement.value_or(Placement{})), 0.0, target.warnings};
     const Target standing{voxels.mesh, target.closed, {}};
+    std::optional<ReliefRoom> room;
+    if (placement && placement->relief) room = reliefRoom(field);
     SolidVoxelizer voxelizer;
     std::vector<double> times;
     for (int i = 0; i < repeat; ++i) {
         const auto start = std::chrono::steady_clock::now();
-        voxelizeTarget(field.frame, standing, voxelizer, voxels.bits, session.progress());
+        if (room)
+            voxelizeRelief(*room, standing.mesh.positions, standing.mesh.triangles, voxels.bits);
+        else
+            voxelizeTarget(field.frame, standing, voxelizer, voxels.bits, session.progress());
         times.push_back(std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count());
     }
     if (!target.closed) Session::endProgress();
     voxels.voxelizeMilliseconds = median(std::move(times));
-    const double beyond = shareBeyondFrame(field.frame, standing, voxels.bits);
+    const double beyond = room ? 0.0 : shareBeyondFrame(field.frame, standing, voxels.bits);
     if (beyond > 0.01 && voxels.bits.count() > 0)
         voxels.warnings.push_back(std::to_string(std::lround(100.0 * beyond)) +
                                   " % of the target lies beyond the space the device can show and is ignored" +

@@ -21,12 +21,15 @@ namespace lumorph::cli {
 
 namespace {
 
+constexpr double kFitsNowhere = 0.15; ///< IoU below which nobody knows the target again
+
 struct MatchArguments {
     std::string field;
     TargetArguments target;
     std::string method = "voting";
     double budgetMilliseconds = 10.0;
     bool autoPlace = false;
+    std::string relief = "auto";
     std::string animation;
     double framesPerSecond = 30.0;
     std::string csv;
@@ -94,8 +97,9 @@ void addWarnings(const Matcher& matcher, const BitColumns& wanted, bool autoPlac
 }
 
 Result matchVoxels(const Matcher& matcher, const TargetVoxels& target, const MatchArguments& arguments,
-                   const Session& session) {
+                   const std::optional<AutoPlacement>& placement, const Session& session) {
     Result result;
+    result.placement = placement;
     result.warnings = target.warnings;
     result.voxelizeMilliseconds = target.voxelizeMilliseconds;
     BitColumns wanted = target.bits;
@@ -111,6 +115,13 @@ Result matchVoxels(const Matcher& matcher, const TargetVoxels& target, const Mat
         const Microseconds budget(static_cast<std::int64_t>(1000.0 * arguments.budgetMilliseconds));
         result.refineMilliseconds = medianMilliseconds(
             repeat, session, [&] { result.refinement = refiner.refine(wanted, result.votes.state(), budget, clock); });
+        if (placement) { // its own search may have come further
+            const Refinement again = refiner.refine(wanted, placement->state, budget, clock);
+            if (again.after.iou() > result.refinement->after.iou()) {
+                result.refinement->state = again.state;
+                result.refinement->after = again.after;
+            }
+        }
         result.state = result.refinement->state;
         result.quality = result.refinement->after;
     } else {
@@ -129,6 +140,7 @@ nlohmann::json stateJson(const State& state) {
 nlohmann::json placementJson(const Placement& p) {
     return {{"scale", p.scale},
             {"yawDegrees", p.yaw.inDegrees()},
+            {"relief", p.relief},
             {"orientation", {p.orientation.x, p.orientation.y, p.orientation.z, p.orientation.w}},
             {"translation", {p.translation.x, p.translation.y, p.translation.z}}};
 }
@@ -167,10 +179,15 @@ nlohmann::json resultJson(const Matcher& matcher, const Result& result, const Ma
         const Placement& p = result.placement->placement;
         json["placement"] = placementJson(p);
         json["placement"]["iouAtFit"] = result.placement->iouAtFit;
+        json["placement"]["iouPlain"] = result.placement->iouPlain;
+        json["placement"]["iouModel"] = result.placement->alternatives.front().iouModel;
         json["placement"]["placementsSeen"] = result.placement->placementsSeen;
         json["alternatives"] = nlohmann::json::array();
         for (const PlacementCandidate& one : result.placement->alternatives)
-            json["alternatives"].push_back({{"iou", one.iou}, {"placement", placementJson(one.placement)}});
+            json["alternatives"].push_back({{"iou", one.iou},
+                                            {"iouModel", one.iouModel},
+                                            {"state", stateJson(one.state)},
+                                            {"placement", placementJson(one.placement)}});
     }
     return json;
 }
@@ -258,14 +275,23 @@ void match(const MatchArguments& arguments, const Session& session) {
     TargetVoxels target;
     if (arguments.autoPlace) {
         const Target mesh = readTargetMesh(session, arguments.target.path);
-        placement = autoPlace(matcher.field, matcher.coverage, matcher.voting, mesh, {}, session.progress());
+        AutoPlaceOptions options;
+        options.relief = arguments.relief == "auto"     ? ReliefChoice::automatic
+                         : arguments.relief == "always" ? ReliefChoice::always
+                                                        : ReliefChoice::never;
+        placement = autoPlace(matcher.field, matcher.coverage, matcher.voting, mesh, options, session.progress());
         Session::endProgress();
         target = voxelsOf(session, matcher.field, mesh, placement->placement, arguments.target.repeat);
     } else {
         target = readTarget(session, matcher.field, arguments.target);
     }
-    Result result = matchVoxels(matcher, target, arguments, session);
-    result.placement = placement;
+    Result result = matchVoxels(matcher, target, arguments, placement, session);
+    if (placement && placement->iou < kFitsNowhere) {
+        char text[96];
+        std::snprintf(text, sizeof text, "This target fits nowhere on this device: IoU %.2f at its best place.",
+                      placement->iou);
+        result.warnings.emplace_back(text);
+    }
     printWarnings(result.warnings);
     if (!arguments.picture.empty())
         drawMatch(matcher.coverage.rig(), target.mesh,
@@ -287,6 +313,13 @@ void addMatchCommand(CLI::App& app, Session& session) {
     CLI::Option* place =
         command->add_flag("--auto-place", a->autoPlace, "Search orientation, scale and position for the best IoU");
     place->excludes("--fit");
+    command
+        ->add_option("--relief", a->relief,
+                     "Show the target as on a coin, its heights compressed to the device's: auto (where nothing else "
+                     "fits), never or always")
+        ->check(CLI::IsMember({"auto", "never", "always"}))
+        ->needs(place)
+        ->capture_default_str();
     command->add_option("--method", a->method, "voting or refined")
         ->check(CLI::IsMember({"voting", "refined"}))
         ->capture_default_str();

@@ -19,7 +19,8 @@ Rig rigOf(const Field& field) {
 } // namespace
 
 MatchField::MatchField(Field built)
-    : field(std::move(built)), rig(rigOf(field)), coverage(rig, field.frame, field.levels), voting(field) {}
+    : field(std::move(built)), rig(rigOf(field)), coverage(rig, field.frame, field.levels), voting(field),
+      relief(reliefRoom(field)) {}
 
 bool isFieldOf(const MatchField& field, const Rig& rig) {
     // Numbers may change in their last bit by being written and read, so equal files count as well.

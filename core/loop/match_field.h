@@ -1,7 +1,10 @@
 #pragma once
 
+#include <optional>
+
 #include "core/mdf/coverage.h"
 #include "core/mdf/field.h"
+#include "core/mdf/relief.h"
 #include "core/mdf/voting.h"
 #include "core/rig/rig.h"
 
@@ -14,6 +17,7 @@ struct MatchField {
     Rig rig;
     Coverage coverage;
     Voting voting;
+    std::optional<ReliefRoom> relief; ///< none for a device that rises nowhere
 };
 
 /// Whether a field was built for this rig, or for one that is the same solid in every joint state.

@@ -69,6 +69,7 @@ struct MatchFrame {
     std::optional<ItemFit> itemFit;    ///< with a field, while the scene's item drives
     std::optional<double> poseSeconds; ///< how far the poses have come that play; empty: none do
     double seconds = 0.0;              ///< of the target's animation
+    bool relief = false;               ///< it is matched as a relief
     Angle turned;                      ///< by spinning, on top of the placement's yaw
     glm::mat4 deviceFromTarget{1.0F};
     std::shared_ptr<const std::vector<glm::vec3>>

@@ -55,9 +55,11 @@ bool TargetStage::show(const MatchWish& wish, const Clock& clock, MatchTimes& ms
         pose(wish);
     }
     if (!field) field_ = nullptr;
-    if (!field || (samePose && sameField && voxelizedAt_ == deviceFromTarget_)) return false;
+    if (!field || (samePose && sameField && voxelizedAt_ == deviceFromTarget_ && relief_ == wish.placement.relief))
+        return false;
     const StageTimer timer(clock, ms.voxelize);
     field_ = nullptr;
+    relief_ = wish.placement.relief;
     voxelize(field);
     voxelizedAt_ = deviceFromTarget_;
     field_ = field;
@@ -83,8 +85,13 @@ void TargetStage::pose(const MatchWish& wish) {
 void TargetStage::voxelize(const std::shared_ptr<const MatchField>& shared) {
     const MatchField& field = *shared;
     placePoints(*positions_, deviceFromTarget_, placed_.mesh.positions);
-    voxelizeTarget(field.field.frame, placed_, voxelizer_, voxels_.written());
-    shareBeyondFrame_ = shareBeyondFrame(field.field.frame, placed_, voxels_.bits());
+    if (relief_ && field.relief) {
+        voxelizeRelief(*field.relief, placed_.mesh.positions, placed_.mesh.triangles, voxels_.written());
+        shareBeyondFrame_ = 0.0; // it was compressed to what is there
+    } else {
+        voxelizeTarget(field.field.frame, placed_, voxelizer_, voxels_.written());
+        shareBeyondFrame_ = shareBeyondFrame(field.field.frame, placed_, voxels_.bits());
+    }
     voxels_.keepDomain(shared);
 }
 
@@ -95,6 +102,7 @@ void TargetStage::describe(MatchFrame& frame) const {
     frame.turned = turned_;
     frame.deviceFromTarget = deviceFromTarget_;
     frame.targetPositions = positions_;
+    frame.relief = relief_;
     if (!field_) return;
     frame.matched = true;
     frame.targetVolume = static_cast<double>(voxels_.count()) * field_->field.frame.voxelVolume();

@@ -44,7 +44,8 @@ private:
 
     std::shared_ptr<const MatchField> field_; ///< that `voxels_` are in; empty while they are not worked out
     glm::mat4 voxelizedAt_{1.0F};
-    Target placed_; ///< the posed mesh in device coordinates; a buffer
+    bool relief_ = false; ///< so `voxels_` are shaped
+    Target placed_;       ///< the posed mesh in device coordinates; a buffer
     SolidVoxelizer voxelizer_;
     TargetVoxels voxels_;
     double shareBeyondFrame_ = 0.0;

@@ -4,7 +4,9 @@
 #include <array>
 #include <atomic>
 #include <cmath>
+#include <iterator>
 #include <numbers>
+#include <optional>
 
 #include <glm/gtc/quaternion.hpp>
 #include <tbb/enumerable_thread_specific.h>
@@ -13,6 +15,7 @@
 #include "core/base/error.h"
 #include "core/mdf/placement_scorer.h"
 #include "core/mdf/refine.h"
+#include "core/mdf/relief.h"
 
 namespace lumorph {
 
@@ -22,6 +25,7 @@ constexpr std::size_t kCoarseClimbs = 24;
 constexpr std::size_t kFineLooks = 10;
 constexpr std::size_t kFineClimbs = 4;
 constexpr std::size_t kAlternatives = 3;
+constexpr Microseconds kFinalBudget{20'000};
 constexpr double kSameLook = 0.7; ///< IoU of two placements' voxels from which on they look the same
 
 /// A point of the search: the middle of the target's box stays in place while it is turned and scaled.
@@ -87,6 +91,20 @@ std::vector<glm::quat> orientations(int count) {
                       static_cast<float>(r * std::cos(alpha)), static_cast<float>(R * std::sin(beta))));
     }
     return all;
+}
+
+/// The best that count and look different.
+std::vector<PlacementCandidate> differentOf(std::vector<PlacementCandidate> all) {
+    std::ranges::stable_sort(all, [](const auto& a, const auto& b) { return a.iou > b.iou; });
+    std::vector<PlacementCandidate> kept;
+    for (PlacementCandidate& one : all) {
+        if (one.iou < 0.0 || kept.size() == kAlternatives) break;
+        if (std::ranges::none_of(kept, [&](const PlacementCandidate& other) {
+                return intersectionOverUnion(one.wanted, other.wanted) > kSameLook;
+            }))
+            kept.push_back(std::move(one));
+    }
+    return kept;
 }
 
 class Placer {
@@ -302,54 +320,35 @@ private:
         progress_.report(from + (to - from) * done / all, what);
     }
 
-    /// A candidate with the voxels of its mesh; an IoU below 0 where it does not count.
-    struct Final {
-        PlacementCandidate candidate;
-        BitColumns bits;
-    };
-
-    [[nodiscard]] Final finalOf(const Pose& pose) {
+    /// With the voxels of its mesh; an IoU below 0 where it does not count.
+    [[nodiscard]] PlacementCandidate candidateAt(const Pose& pose) {
         Worker& worker = workers_.local();
-        Final made{{placementOf(pose), {}, -1.0}, {}};
-        voxelizeTarget(field_.frame, {placed(target_.mesh, made.candidate.placement), target_.closed, {}},
-                       worker.voxelizer, made.bits, progress_.part(0.9, 0.9));
-        made.bits &= coverage_.domain();
+        PlacementCandidate made;
+        made.placement = placementOf(pose);
+        made.iou = -1.0;
+        voxelizeTarget(field_.frame, {placed(target_.mesh, made.placement), target_.closed, {}}, worker.voxelizer,
+                       made.wanted, progress_.part(0.9, 0.9));
+        made.wanted &= coverage_.domain();
         const double volume = target_.closed ? std::abs(signedVolume(target_.mesh)) : grid_.volume();
-        if (made.bits.count() == 0 || !counts(pose) ||
-            !enoughInside(made.bits.count(), field_.frame.voxelVolume(), pose, volume))
+        if (made.wanted.count() == 0 || !counts(pose) ||
+            !enoughInside(made.wanted.count(), field_.frame.voxelVolume(), pose, volume))
             return made;
-        voting_.match(made.bits, worker.votes, worker.voting);
-        const Refinement refined = worker.refiner.refine(made.bits, worker.votes.state(), Microseconds{20'000}, clock_);
-        made.candidate.state = refined.state;
-        made.candidate.iou = refined.after.iou();
+        voting_.match(made.wanted, worker.votes, worker.voting);
+        const Refinement refined = worker.refiner.refine(made.wanted, worker.votes.state(), kFinalBudget, clock_);
+        made.state = refined.state;
+        made.iou = made.iouModel = refined.after.iou();
         return made;
     }
 
     /// The last of `found` is where the target fits.
     [[nodiscard]] AutoPlacement chosen(const std::vector<Scored>& found) {
-        std::vector<Final> all(found.size());
-        tbb::parallel_for(std::size_t{0}, found.size(), [&](std::size_t k) { all[k] = finalOf(found[k].pose); });
+        std::vector<PlacementCandidate> all(found.size());
+        tbb::parallel_for(std::size_t{0}, found.size(), [&](std::size_t k) { all[k] = candidateAt(found[k].pose); });
         AutoPlacement result;
-        result.iouAtFit = std::max(0.0, all.back().candidate.iou);
-        std::ranges::stable_sort(all, [](const Final& a, const Final& b) { return a.candidate.iou > b.candidate.iou; });
-        std::vector<const Final*> kept;
-        for (const Final& one : all) {
-            const auto looksLike = [&](const Final* other) {
-                return intersectionOverUnion(one.bits, other->bits) > kSameLook;
-            };
-            if (one.candidate.iou < 0.0 || kept.size() == kAlternatives || std::ranges::any_of(kept, looksLike))
-                continue;
-            kept.push_back(&one);
-            result.alternatives.push_back(one.candidate);
-        }
-        if (kept.empty())
-            throw InvalidInput("target", "no placement shows enough of it: it is thinner than a voxel or has no volume",
-                               "give a solid target, or build the field with a higher resolution");
-        result.placement = kept.front()->candidate.placement;
-        result.state = kept.front()->candidate.state;
-        result.iou = kept.front()->candidate.iou;
+        result.iouAtFit = std::max(0.0, all.back().iou);
         result.placementsSeen = seen_;
-        progress_.report(1.0, "improving places");
+        result.alternatives = differentOf(std::move(all));
+        if (!result.alternatives.empty()) result.iouPlain = result.alternatives.front().iou;
         return result;
     }
 
@@ -358,7 +357,7 @@ private:
     const Voting& voting_;
     const Target& target_;
     const AutoPlaceOptions& options_;
-    const Progress& progress_;
+    Progress progress_;
     TargetGrid grid_;
     PlacementScorer scorer_;
     SteadyClock clock_;
@@ -366,11 +365,75 @@ private:
     std::atomic<int> seen_{0};
 };
 
+/// The target as a relief in every orientation along the axes.
+std::vector<PlacementCandidate> reliefsOf(const Field& field, const Coverage& coverage, const Voting& voting,
+                                          const Target& target, const Progress& progress) {
+    const std::optional<ReliefRoom> found = reliefRoom(field);
+    if (!found) return {};
+    const ReliefRoom& room = *found;
+    std::vector<PlacementCandidate> all(kReliefPlacements);
+    tbb::parallel_for(0, kReliefPlacements, [&](int index) {
+        progress.throwIfCancelled();
+        PlacementCandidate& made = all[static_cast<std::size_t>(index)];
+        made.placement = reliefPlacement(room, target.mesh, index);
+        std::vector<glm::vec3> positions;
+        placePoints(target.mesh.positions, made.placement.deviceFromTarget(), positions);
+        voxelizeRelief(room, positions, target.mesh.triangles, made.wanted);
+        made.wanted &= coverage.domain();
+        Refiner refiner(coverage);
+        const Refinement refined =
+            refiner.refine(made.wanted, voting.match(made.wanted).state(), kFinalBudget, SteadyClock());
+        made.state = refined.state;
+        made.iou = made.wanted.count() > 0 ? refined.after.iou() : -1.0;
+        SolidVoxelizer voxelizer;
+        BitColumns plain;
+        if (target.closed)
+            voxelizer.voxelize(field.frame, positions, target.mesh.triangles, plain);
+        else
+            plain = made.wanted; // its inside is not known
+        plain &= coverage.domain();
+        made.iouModel = refiner.qualityOf(plain, made.state).iou();
+    });
+    // Face up, as people show heads on coins, unless another side is clearly better.
+    constexpr double kFaceUp = 0.05;
+    const double best = std::ranges::max_element(all, {}, &PlacementCandidate::iou)->iou;
+    if (all.front().iou >= best - kFaceUp)
+        std::erase_if(all, [&](const auto& one) { return one.iou > all.front().iou; });
+    return differentOf(std::move(all));
+}
+
 } // namespace
 
 AutoPlacement autoPlace(const Field& field, const Coverage& coverage, const Voting& voting, const Target& target,
                         const AutoPlaceOptions& options, const Progress& progress) {
-    return Placer(field, coverage, voting, target, options, progress).run();
+    constexpr double kPoor = 0.3, kGain = 0.1;
+    AutoPlacement result;
+    const bool plain = options.relief != ReliefChoice::always;
+    if (plain) result = Placer(field, coverage, voting, target, options, progress.part(0.0, 0.9)).run();
+    if (!plain || (options.relief == ReliefChoice::automatic && result.iouPlain < kPoor)) {
+        std::vector<PlacementCandidate> reliefs = reliefsOf(field, coverage, voting, target, progress);
+        if (!reliefs.empty() && (!plain || reliefs.front().iou >= result.iouPlain + kGain)) {
+            result.alternatives.insert(result.alternatives.begin(), std::make_move_iterator(reliefs.begin()),
+                                       std::make_move_iterator(reliefs.end()));
+            // The best relief, the best plain place, then another relief.
+            if (result.alternatives.size() > kAlternatives) {
+                if (reliefs.size() >= kAlternatives && plain)
+                    std::swap(result.alternatives[1], result.alternatives[reliefs.size()]);
+                result.alternatives.resize(kAlternatives);
+            }
+        }
+    }
+    if (!plain && result.alternatives.empty())
+        throw InvalidInput("relief", "the device moves nothing above its rest surface", "use a rig that lifts");
+    if (result.alternatives.empty())
+        throw InvalidInput("target", "no placement shows enough of it: it is thinner than a voxel or has no volume",
+                           "give a solid target, or build the field with a higher resolution");
+    const PlacementCandidate& best = result.alternatives.front();
+    result.placement = best.placement;
+    result.state = best.state;
+    result.iou = best.iou;
+    progress.report(1.0, "improving places");
+    return result;
 }
 
 } // namespace lumorph

@@ -6,6 +6,7 @@
 #include "core/base/error.h"
 #include "core/base/text.h"
 #include "core/mdf/frame_matcher.h"
+#include "core/mdf/relief.h"
 #include "core/motion/rig_motion.h"
 
 namespace lumorph {
@@ -44,6 +45,7 @@ std::vector<ClipFrame> matchClip(const Field& field, const Coverage& coverage, c
             ? *options.placement
             : fitPlacement(field, boxOverAnimation(model, animation, frames, fps, progress.part(0.0, 0.3)));
 
+    const std::optional<ReliefRoom> room = placement.relief ? reliefRoom(field) : std::nullopt;
     MotionModel motion(motionLimits(coverage.rig()));
     FrameMatcher matcher(coverage, voting);
     const SteadyClock clock;
@@ -59,8 +61,11 @@ std::vector<ClipFrame> matchClip(const Field& field, const Coverage& coverage, c
         progress.throwIfCancelled();
         ClipFrame frame;
         frame.seconds = k / fps;
-        voxelizeTarget(field.frame, {placed(flatten(model, animation, frame.seconds), placement), closed, {}},
-                       voxelizer, target, progress.part(matched(k), matched(k + 1)));
+        const Target now{placed(flatten(model, animation, frame.seconds), placement), closed, {}};
+        if (room)
+            voxelizeRelief(*room, now.mesh.positions, now.mesh.triangles, target);
+        else
+            voxelizeTarget(field.frame, now, voxelizer, target, progress.part(matched(k), matched(k + 1)));
         target &= coverage.domain();
         matcher.vote(target, votes);
         options.refined ? matcher.refine(target, options.budget, clock) : matcher.keepVotes(target);

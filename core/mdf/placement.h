@@ -46,6 +46,7 @@ struct Placement {
     Angle yaw; ///< heading about +Y, after `orientation`
     glm::vec3 translation{0.0F};
     glm::quat orientation{1.0F, 0.0F, 0.0F, 0.0F}; ///< which side is up; a unit quaternion
+    bool relief = false;                           ///< matched as `voxelizeRelief` shapes it; shown as it is
 
     [[nodiscard]] glm::mat4 deviceFromTarget() const;
     /// Heading and orientation in one.

@@ -178,6 +178,7 @@ Placement readPlacement(JsonSection section) {
     std::vector<double> translation(3, 0.0);
     section.numbers("translation", translation, -kFar, kFar, 3, true);
     for (int axis = 0; axis < 3; ++axis) placement.translation[axis] = static_cast<float>(translation[axis]);
+    section.flag("relief", placement.relief);
     std::vector<double> turn{0.0, 0.0, 0.0, 1.0};
     section.numbers("orientation", turn, -1.0, 1.0, 4, true);
     const glm::dquat orientation(turn[3], turn[0], turn[1], turn[2]);
@@ -263,7 +264,8 @@ json documentOf(const Project& project) {
           {{"scale", project.placement.scale},
            {"yaw", project.placement.yaw.inRadians()},
            {"translation", {t.x, t.y, t.z}},
-           {"orientation", {q.x, q.y, q.z, q.w}}});
+           {"orientation", {q.x, q.y, q.z, q.w}},
+           {"relief", project.placement.relief}});
     merge(document, "matching",
           {{"driver", driverKey(project.matching.driver)},
            {"refined", project.matching.refined},

@@ -55,6 +55,33 @@ TEST_F(ProjectServicePlacing, ANewTargetShowsWhereItFitsAndThenMovesWhereItMatch
     EXPECT_TRUE(world.state().target.target) << "only its place was taken back";
 }
 
+TEST_F(ProjectServicePlacing, OtherPlacesThatWereFoundCanBeChosen) {
+    open("wall.obj");
+    ASSERT_TRUE(eventually([&] { return world.document.undoStack().count() == before + 2; }));
+    const auto places = world.service.places();
+    ASSERT_GE(places.size(), 2U);
+    EXPECT_TRUE(world.state().placement == places[0].placement);
+    EXPECT_GE(places[0].iou, places[1].iou);
+    world.service.choosePlace(1);
+    EXPECT_TRUE(world.state().placement == places[1].placement);
+    EXPECT_EQ(world.document.undoStack().undoText(), "Choose another place");
+    world.service.choosePlace(7);
+    EXPECT_EQ(world.document.undoStack().count(), before + 3);
+    world.document.undoStack().undo();
+    EXPECT_TRUE(world.state().placement == places[0].placement);
+    world.service.removeTarget();
+    EXPECT_TRUE(world.service.places().empty()) << "they were of another target";
+}
+
+TEST_F(ProjectServicePlacing, AReliefIsShownAndTakenBack) {
+    open("wall.obj");
+    ASSERT_TRUE(eventually([&] { return world.document.undoStack().count() == before + 2; }));
+    world.service.setRelief(true);
+    ASSERT_TRUE(eventually([&] { return world.state().placement.relief; }));
+    world.service.setRelief(false);
+    ASSERT_TRUE(eventually([&] { return !world.state().placement.relief; }));
+}
+
 TEST_F(ProjectServicePlacing, WhoMovesItMeanwhileWins) {
     open("wall.obj");
     world.document.change("Move", [](StudioState& s) { s.placement.translation.x += 0.003F; });

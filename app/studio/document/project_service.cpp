@@ -281,6 +281,7 @@ void ProjectService::Data::connectPieces() {
     connect(&opening, &AssetOpening::recordingChosen, &service, &ProjectService::recordingChosen);
     connect(&opening, &AssetOpening::fileWanted, &service, &ProjectService::chooseFile);
     connect(&building, &FieldBuilding::rigWanted, &service, [this] { emit service.chooseFile("rig"); });
+    connect(&placing, &TargetPlacing::placesChanged, &service, &ProjectService::placesChanged);
     connect(&placing, &TargetPlacing::fieldWanted, &building, [this] { building.build({}, false); });
     connect(&placing, &TargetPlacing::targetWanted, &service, [this] { emit service.chooseFile("target"); });
     connect(&scene, &SceneAssetsReader::assetWanted, &service, &ProjectService::chooseAsset);
@@ -520,6 +521,11 @@ void ProjectService::removeTarget() {
 void ProjectService::buildField(const BuildOptions& options) { data_->building.build(options, true); }
 void ProjectService::fit() { data_->placing.fit(); }
 void ProjectService::autoPlace() { data_->placing.autoPlace(); }
+void ProjectService::setRelief(bool relief) {
+    data_->placing.autoPlace(relief ? ReliefChoice::always : ReliefChoice::never);
+}
+std::span<const PlacementCandidate> ProjectService::places() const { return data_->placing.places(); }
+void ProjectService::choosePlace(std::size_t index) { data_->placing.choosePlace(index); }
 bool ProjectService::autoPlaced() const { return data_->placing.autoPlaced(); }
 void ProjectService::relink(const std::string& asset, const std::filesystem::path& file) {
     data_->scene.relink(asset, file);

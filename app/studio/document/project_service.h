@@ -4,6 +4,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -18,6 +19,7 @@
 #include "app/studio/document/project_io.h"
 #include "app/studio/document/studio_document.h"
 #include "core/loop/show_program.h"
+#include "core/mdf/auto_place.h"
 #include "core/mdf/builder.h"
 
 namespace lumorph::studio {
@@ -50,8 +52,12 @@ public:
     void setPlacesNewTargets(bool places);
     void removeTarget();
     void buildField(const BuildOptions& options);
-    void fit();                            ///< the largest size that fits, standing on the device
-    void autoPlace();                      ///< searches heading, size and place
+    void fit();                  ///< the largest size that fits, standing on the device
+    void autoPlace();            ///< searches orientation, size and place
+    void setRelief(bool relief); ///< the target shown as a relief, or as it is
+    /// The different places that were found last for target and field as they are, the best first.
+    [[nodiscard]] std::span<const PlacementCandidate> places() const;
+    void choosePlace(std::size_t index);
     [[nodiscard]] bool autoPlaced() const; ///< it just did so: again would change nothing
 
     /// What is open, as it would be saved now.
@@ -98,6 +104,7 @@ public:
     static std::filesystem::path sessionFolder();
 
 signals:
+    void placesChanged();
     void keptWorkChanged();
     void tookOver();                  ///< the other studio has ended; the session is kept where its was
     void opened(const QString& path); ///< for the list of recent files

@@ -25,6 +25,7 @@ Placement soundPlacement(const Placement& before, const Placement& edited) {
     for (int axis = 0; axis < 3; ++axis)
         sound.translation[axis] =
             static_cast<float>(soundNumber(before.translation[axis], edited.translation[axis], -kFar, kFar));
+    sound.relief = edited.relief;
     const float length = glm::length(edited.orientation);
     sound.orientation = !(length > 0.0F) || !std::isfinite(length) ? before.orientation
                         : std::abs(length - 1.0F) < 1e-4F          ? edited.orientation

@@ -16,6 +16,7 @@ namespace lumorph::studio {
 namespace {
 
 constexpr int kGlideMilliseconds = 700;
+constexpr double kFitsNowhere = 0.15; ///< IoU below which nobody knows the target again
 
 /// Part of the way from one placement to another, the short way round.
 Placement between(const Placement& from, const Placement& to, double share) {
@@ -23,7 +24,14 @@ Placement between(const Placement& from, const Placement& to, double share) {
     const double turn = std::remainder(to.yaw.inRadians() - from.yaw.inRadians(), 2.0 * std::numbers::pi);
     return {from.scale * std::pow(to.scale / from.scale, share), Angle::radians(from.yaw.inRadians() + share * turn),
             from.translation + part * (to.translation - from.translation),
-            glm::slerp(from.orientation, to.orientation, part)};
+            glm::slerp(from.orientation, to.orientation, part), to.relief};
+}
+
+AutoPlacement search(const MatchField& field, const MatchTarget& target, ReliefChoice relief,
+                     const Progress& progress) {
+    AutoPlaceOptions options;
+    options.relief = relief;
+    return autoPlace(field.field, field.coverage, field.voting, target.solid, options, progress);
 }
 
 } // namespace
@@ -32,6 +40,7 @@ TargetPlacing::TargetPlacing(StudioDocument& document, JobSlots& jobs, Notices& 
     : document_(document), jobs_(jobs), notices_(notices) {
     connect(&document, &StudioDocument::changed, this, [this](StateParts parts) {
         if (parts & StatePart::field) placeNew();
+        if (parts & (StatePart::field | StatePart::target)) emit placesChanged();
     });
 }
 
@@ -54,7 +63,7 @@ void TargetPlacing::fit() {
     }
 }
 
-void TargetPlacing::autoPlace() {
+void TargetPlacing::autoPlace(ReliefChoice relief) {
     const StudioState::TargetAsset target = document_.state().target;
     const std::shared_ptr<const MatchField> field = document_.state().field.field;
     if (!target.target) return;
@@ -68,15 +77,41 @@ void TargetPlacing::autoPlace() {
     }
     jobs_.run<AutoPlacement>(
         "place", "target", tr("Placing the target"),
-        [target, field](const Progress& progress) {
-            return lumorph::autoPlace(field->field, field->coverage, field->voting, target.target->solid, {}, progress);
-        },
+        [target, field, relief](const Progress& progress) { return search(*field, *target.target, relief, progress); },
         [this, target, field](const AutoPlacement& found) {
             if (document_.state().target.target != target.target || document_.state().field.field != field) return;
-            placed_ = {target.target, field, found.placement};
+            keep(target.target, field, found, found.placement);
             document_.change(tr("Auto-place target"), [&](StudioState& state) { state.placement = found.placement; });
         },
         {{tr("Fit"), [this] { fit(); }}});
+}
+
+void TargetPlacing::keep(const std::shared_ptr<const MatchTarget>& target,
+                         const std::shared_ptr<const MatchField>& field, const AutoPlacement& found,
+                         const Placement& stands) {
+    placed_ = {target, field, stands, found.alternatives};
+    if (found.iou < kFitsNowhere)
+        notices_.post(
+            "target",
+            {Notice::Level::warning,
+             fullName(document_.state().target.path.stem()),
+             tr("it fits nowhere on this device; this is its best place, at %1 IoU").arg(found.iou, 0, 'f', 2),
+             tr("take a target with wide, low shapes, or a device that rises higher"),
+             {}});
+    emit placesChanged();
+}
+
+std::span<const PlacementCandidate> TargetPlacing::places() const {
+    const StudioState& state = document_.state();
+    if (!placed_.target || placed_.target != state.target.target || placed_.field != state.field.field) return {};
+    return placed_.places;
+}
+
+void TargetPlacing::choosePlace(std::size_t index) {
+    const std::span<const PlacementCandidate> found = places();
+    if (index >= found.size()) return;
+    const Placement placement = found[index].placement;
+    document_.change(tr("Choose another place"), [&](StudioState& state) { state.placement = placement; });
 }
 
 bool TargetPlacing::autoPlaced() const {
@@ -98,13 +133,13 @@ void TargetPlacing::placeNew() {
     jobs_.runWith<AutoPlacement>(
         "place", "target", tr("Looking for a better place"),
         [target = target, field](const Progress& progress) {
-            return lumorph::autoPlace(field->field, field->coverage, field->voting, target->solid, {}, progress);
+            return search(*field, *target, ReliefChoice::automatic, progress);
         },
         [this, target = target, placement = placement, field, what](const AutoPlacement& found) {
             const StudioState& now = document_.state();
             if (now.target.target != target || now.placement != placement || now.field.field != field) return;
             const bool better = found.iou > found.iouAtFit;
-            placed_ = {target, field, better ? found.placement : now.placement};
+            keep(target, field, found, better ? found.placement : now.placement);
             if (!document_.previewing() && better) glideTo(found.placement, what);
         },
         [](const std::exception&) {}); // nobody asked for it, and it stays where it fits

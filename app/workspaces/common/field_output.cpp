@@ -89,7 +89,10 @@ void writeTargetVoxels(const MatchFrame& frame, const fs::path& file) {
     const VoxelFrame& voxels = frame.field->field.frame;
     SolidVoxelizer voxelizer;
     BitColumns bits;
-    voxelizeTarget(voxels, target, voxelizer, bits);
+    if (frame.relief && frame.field->relief)
+        voxelizeRelief(*frame.field->relief, target.mesh.positions, target.mesh.triangles, bits);
+    else
+        voxelizeTarget(voxels, target, voxelizer, bits);
     writeFileAtomically(file, writeNrrd(bytesOf(voxels, bits), "target"));
 }
 

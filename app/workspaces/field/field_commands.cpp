@@ -81,7 +81,7 @@ private:
                       [this] { studio_.project.removeTarget(); });
         fit_ = add({"target.fit", "Fit", "As large as the device can show, in its middle", "fit", "Ctrl+Shift+F"},
                    "Target", false, [this] { studio_.project.fit(); });
-        autoPlace_ = add({"target.autoPlace", "Auto-place", "Search the heading, size and place that match best",
+        autoPlace_ = add({"target.autoPlace", "Auto-place", "Search the orientation, size and place that match best",
                           "auto-place", "Ctrl+Shift+A"},
                          "Target", false, [this] { studio_.project.autoPlace(); });
         spin_ = add({"target.spin", "Spin", "Turn the target slowly about its upright axis", "spin", "Ctrl+Shift+G"},
@@ -174,7 +174,7 @@ private:
         fit_->setEnabled(target && field);
         autoPlace_->setEnabled(target && field && !placed);
         autoPlace_->setToolTip(placed ? "The target stands where auto-place put it; it would change nothing"
-                                      : "Search the heading, size and place that match best (Ctrl+Shift+A)");
+                                      : "Search the orientation, size and place that match best (Ctrl+Shift+A)");
         for (QAction* action : {rest_, random_, dance_}) action->setEnabled(rig);
         play_->setEnabled(target && state.target.target->duration > 0.0);
         play_->setText(state.playback.playing ? "Pause" : "Play");

@@ -51,7 +51,7 @@ ViewCamera storyCamera() {
 /// The target as it stands at this moment.
 StoryTarget targetNow(Studio& studio) {
     const StudioState& state = studio.document.state();
-    StoryTarget now{state.target.target, state.placement.deviceFromTarget(), 0.0};
+    StoryTarget now{state.target.target, state.placement.deviceFromTarget(), 0.0, state.placement.relief};
     const auto& frame = studio.loop.frame();
     if (!frame || !now.target || frame->target != now.target) return now;
     now.seconds = frame->seconds;

@@ -1,5 +1,7 @@
 #include "app/workspaces/field/match_numbers.h"
 
+#include <algorithm>
+
 #include <QGridLayout>
 #include <QLabel>
 #include <QPainter>
@@ -36,6 +38,19 @@ QLabel* muted(const QString& text, QWidget* parent) {
     return label;
 }
 
+/// Where the rest of the target is lost, in volumes.
+QString whyNotBetter(const MatchFrame& frame) {
+    constexpr double kLittle = 5e-7; // cubic metres: half a cubic centimetre
+    const double beyond = frame.targetVolume * frame.shareBeyondFrame / std::max(1e-9, 1.0 - frame.shareBeyondFrame);
+    const double unreachable = frame.targetVolume * frame.shareUnreachable;
+    const double givenUp = frame.unmatchedVolume - unreachable;
+    QStringList parts;
+    if (beyond > kLittle) parts << QObject::tr("%1 are beyond the frame").arg(volumeText(beyond));
+    if (unreachable > kLittle) parts << QObject::tr("%1 where no actuator reaches").arg(volumeText(unreachable));
+    if (givenUp > kLittle) parts << QObject::tr("%1 are given up for a better whole").arg(volumeText(givenUp));
+    return parts.isEmpty() ? QString() : QObject::tr("Of the target %1.").arg(parts.join(", "));
+}
+
 /// A chip, a word and a number in one row.
 QWidget* makeVolume(bool unmatched, const QString& text, const QString& hint, QLabel* number, QWidget* parent) {
     auto* row = new QWidget(parent);
@@ -54,8 +69,9 @@ QWidget* makeVolume(bool unmatched, const QString& text, const QString& hint, QL
 QWidget* makeChip(bool unmatched, QWidget* parent) { return new Chip(unmatched, parent); }
 
 MatchNumbers::MatchNumbers(QWidget* parent)
-    : QWidget(parent), iou_(new QLabel(this)), voting_(makeNumber("match.iou.voting", "0.00", this)),
-      wanted_(makeNumber("match.iou.wanted", "0.00", this)), reached_(makeNumber("match.iou.reached", "0.00", this)),
+    : QWidget(parent), iou_(new QLabel(this)), word_(muted({}, this)), rest_(muted({}, this)),
+      voting_(makeNumber("match.iou.voting", "0.00", this)), wanted_(makeNumber("match.iou.wanted", "0.00", this)),
+      reached_(makeNumber("match.iou.reached", "0.00", this)),
       unmatched_(makeNumber("match.unmatched", "0000 cm³", this)),
       overfilled_(makeNumber("match.overfilled", "0000 cm³", this)) {
     iou_->setObjectName("match.iou");
@@ -67,7 +83,10 @@ MatchNumbers::MatchNumbers(QWidget* parent)
     grid->setHorizontalSpacing(8);
     grid->setVerticalSpacing(2);
     grid->addWidget(iou_, 0, 0, 3, 1);
-    grid->addWidget(muted("IoU", this), 0, 1, 3, 1, Qt::AlignLeft | Qt::AlignVCenter);
+    grid->addWidget(muted("IoU", this), 0, 1, Qt::AlignLeft | Qt::AlignBottom);
+    word_->setObjectName("match.word");
+    word_->setToolTip(tr("From 0.7 on a target is good to recognise by touch alone, below 0.4 hardly"));
+    grid->addWidget(word_, 1, 1, Qt::AlignLeft | Qt::AlignTop);
     grid->setColumnStretch(1, 1);
     const auto step = [&](int row, const QString& text, const QString& hint, QLabel* number) {
         QLabel* label = muted(text, this);
@@ -84,6 +103,10 @@ MatchNumbers::MatchNumbers(QWidget* parent)
     grid->addWidget(
         makeVolume(false, "Overfilled", "Volume that the device covers outside the target", overfilled_, this), 5, 0, 1,
         4);
+    rest_->setObjectName("match.rest");
+    rest_->setWordWrap(true);
+    rest_->setMinimumHeight(2 * fontMetrics().lineSpacing()); // it stays where it is while a target moves
+    grid->addWidget(rest_, 6, 0, 1, 4);
 }
 
 void MatchNumbers::show(const MatchFrame& frame, bool refined) {
@@ -95,6 +118,11 @@ void MatchNumbers::show(const MatchFrame& frame, bool refined) {
     reached_->setText(known ? iouText(frame.iouEstimated) : none);
     unmatched_->setText(known ? volumeText(frame.unmatchedVolume) : none);
     overfilled_->setText(known ? volumeText(frame.overfilledVolume) : none);
+    word_->setText(!known                   ? ""
+                   : frame.iouWanted >= 0.7 ? tr("good")
+                   : frame.iouWanted >= 0.4 ? tr("fair")
+                                            : tr("poor"));
+    rest_->setText(known ? whyNotBetter(frame) : QString());
 }
 
 } // namespace lumorph::studio

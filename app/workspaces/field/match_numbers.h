@@ -8,7 +8,8 @@
 namespace lumorph::studio {
 
 /// How well the device fits the target: the IoU large, the steps to it, and the volumes that do not fit. Numbers are
-/// "match.iou", "match.iou.voting", "match.iou.wanted", "match.iou.reached", "match.unmatched" and "match.overfilled".
+/// "match.iou", "match.iou.voting", "match.iou.wanted", "match.iou.reached", "match.unmatched" and
+/// "match.overfilled"; "match.word" and "match.rest" say it in words.
 class MatchNumbers : public QWidget {
     Q_OBJECT
 public:
@@ -19,6 +20,8 @@ public:
 
 private:
     QLabel* iou_ = nullptr;
+    QLabel* word_ = nullptr; ///< "good", "fair" or "poor"
+    QLabel* rest_ = nullptr; ///< where the rest of the target is lost
     QLabel* voting_ = nullptr;
     QLabel* wanted_ = nullptr;
     QLabel* reached_ = nullptr;

@@ -1,5 +1,7 @@
 #include "app/workspaces/field/placement_form.h"
 
+#include <algorithm>
+#include <cmath>
 #include <functional>
 #include <numbers>
 #include <vector>
@@ -31,6 +33,8 @@ public:
             {"turn", "T&urn", "Heading about the upright axis"}, Quantity::angle, -kTurn, kTurn, 0.0,
             std::numbers::pi / 180.0, [](const Placement& placement) { return placement.yaw.inRadians(); },
             [](Placement& placement, double value) { placement.yaw = Angle::radians(value); });
+        addTip("tip", "T&ip", "Forwards, about the axis from left to right", 0);
+        addTip("roll", "&Roll", "Sideways, about the axis from back to front", 2);
         add(
             {"size", "Si&ze", "100 % is the size the file says"}, Quantity::share, 1e-6, 1e6, 1.0, 0.01,
             [](const Placement& placement) { return placement.scale; },
@@ -57,6 +61,25 @@ private:
             {name, label, hint}, Quantity::length, -kFarthest, kFarthest, 0.0, 0.001,
             [axis](const Placement& placement) { return static_cast<double>(placement.translation[axis]); },
             [axis](Placement& placement, double value) { placement.translation[axis] = static_cast<float>(value); });
+    }
+
+    /// Which side of the target is up: its orientation as turns about z, then x, then the upright axis.
+    void addTip(const QString& name, const QString& label, const QString& hint, int axis) {
+        const auto anglesOf = [](const Placement& placement) {
+            const glm::mat3 m = glm::mat3_cast(placement.orientation);
+            const float tip = std::asin(std::clamp(-m[2][1], -1.0F, 1.0F));
+            return glm::dvec3(tip, std::atan2(m[2][0], m[2][2]), std::atan2(m[0][1], m[1][1]));
+        };
+        add(
+            {name, label, hint}, Quantity::angle, -kTurn, kTurn, 0.0, std::numbers::pi / 180.0,
+            [anglesOf, axis](const Placement& placement) { return anglesOf(placement)[axis]; },
+            [anglesOf, axis](Placement& placement, double value) {
+                glm::dvec3 angles = anglesOf(placement);
+                angles[axis] = value;
+                placement.orientation = glm::quat(glm::angleAxis(angles.y, glm::dvec3(0, 1, 0)) *
+                                                  glm::angleAxis(angles.x, glm::dvec3(1, 0, 0)) *
+                                                  glm::angleAxis(angles.z, glm::dvec3(0, 0, 1)));
+            });
     }
 
     void add(const Words& words, Quantity quantity, double low, double high, double reset, double step, Get get,

@@ -35,7 +35,10 @@ void addTarget(Story& story, const StoryTarget& from, const Progress& progress) 
     SolidVoxelizer voxelizer;
     BitColumns bits;
     const MatchField& field = *story.field;
-    voxelizeTarget(field.field.frame, target, voxelizer, bits, progress);
+    if (from.relief && field.relief)
+        voxelizeRelief(*field.relief, target.mesh.positions, target.mesh.triangles, bits);
+    else
+        voxelizeTarget(field.field.frame, target, voxelizer, bits, progress);
     story.match = matchStory(field.coverage, field.voting, std::move(bits), progress);
     BitColumns beyond = story.match->target;
     beyond -= story.reachable;

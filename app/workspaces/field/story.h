@@ -38,6 +38,7 @@ struct StoryTarget {
     std::shared_ptr<const MatchTarget> target; ///< may be empty
     glm::mat4 deviceFromTarget{1.0F};
     double seconds = 0.0;
+    bool relief = false;
 };
 
 /// Throws Cancelled.

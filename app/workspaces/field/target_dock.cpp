@@ -1,16 +1,23 @@
 #include "app/workspaces/field/target_dock.h"
 
+#include <algorithm>
+#include <array>
+#include <cmath>
 #include <numbers>
 
+#include <QCheckBox>
 #include <QComboBox>
+#include <QHBoxLayout>
 #include <QSignalBlocker>
 #include <QStackedLayout>
+#include <QToolButton>
 #include <QVBoxLayout>
 
 #include "app/studio/widgets/dock_parts.h"
 #include "app/studio/widgets/panel.h"
 #include "app/studio/widgets/value_field.h"
 #include "app/workspaces/common/field_summary.h"
+#include "app/workspaces/common/fit_relief.h"
 #include "app/workspaces/field/placement_form.h"
 
 namespace lumorph::studio {
@@ -18,6 +25,7 @@ namespace lumorph::studio {
 namespace {
 
 constexpr double kFastestSpin = 2.0 * std::numbers::pi;
+constexpr QSize kPlacePicture(84, 60);
 
 QLabel* makeText(const QString& name, const char* look, QWidget* parent) {
     auto* label = new QLabel(parent);
@@ -55,7 +63,7 @@ public:
         addMotion();
         column_.layout->addStretch(1);
         connect(&studio.document, &StudioDocument::changed, this, [this](StateParts parts) {
-            if (parts & (StatePart::target | StatePart::placement | StatePart::playback)) refresh();
+            if (parts & (StatePart::target | StatePart::field | StatePart::placement | StatePart::playback)) refresh();
         });
         refresh();
     }
@@ -92,6 +100,81 @@ private:
         column_.layout->addWidget(makeHeading("Place", column_.widget));
         column_.layout->addWidget(makePlacementForm(studio_.document, column_.widget));
         column_.layout->addWidget(makeButtons("target.fit", "target.autoPlace"));
+        relief_ = new QCheckBox(tr("Show as &relief"), column_.widget);
+        relief_->setObjectName("target.relief");
+        relief_->setToolTip(tr("Face up, as a head on a coin: the heights are compressed to what the device rises by. "
+                               "Light shows the target as it is."));
+        connect(relief_, &QCheckBox::clicked, this, [this](bool on) {
+            studio_.project.setRelief(on);
+            refresh(); // until a place is found it is as it was
+        });
+        column_.layout->addWidget(relief_);
+        shares_ = makeText("target.shares", "muted", column_.widget);
+        column_.layout->addWidget(shares_);
+        placesTitle_ = makeText("target.placesTitle", "muted", column_.widget);
+        placesTitle_->setText(tr("Places that were found, and their IoU:"));
+        column_.layout->addWidget(placesTitle_);
+        places_ = new QWidget(column_.widget);
+        auto* row = new QHBoxLayout(places_);
+        row->setContentsMargins(0, 0, 0, 0);
+        row->setSpacing(8);
+        for (std::size_t k = 0; k < placeButtons_.size(); ++k) {
+            auto* place = new QToolButton(places_);
+            place->setObjectName(QString("target.place.%1").arg(k + 1));
+            place->setToolButtonStyle(Qt::ToolButtonTextUnderIcon);
+            place->setIconSize(kPlacePicture);
+            place->setCheckable(true);
+            place->setSizePolicy(QSizePolicy::Expanding, QSizePolicy::Fixed);
+            connect(place, &QToolButton::clicked, this, [this, k] {
+                studio_.project.choosePlace(k);
+                refresh();
+            });
+            row->addWidget(place, 1);
+            placeButtons_[k] = place;
+        }
+        column_.layout->addWidget(places_);
+        connect(&studio_.project, &ProjectService::placesChanged, this, [this] { showPlaces(); });
+        showPlaces();
+    }
+
+    /// A picture of each: the target on the device, and what is missing or too much in their colours.
+    void showPlaces() {
+        const auto found = studio_.project.places();
+        for (std::size_t k = 0; k < placeButtons_.size(); ++k) {
+            placeButtons_[k]->setVisible(k < found.size());
+            if (k >= found.size()) continue;
+            const Coverage& coverage = studio_.document.state().field.field->coverage;
+            BitColumns covered;
+            CoverageScratch scratch;
+            coverage.covered(found[k].state, covered, scratch);
+            const qreal ratio = devicePixelRatioF();
+            QImage picture =
+                pictureOf(reliefOf(coverage.body(), found[k].wanted, covered), kPlacePicture * ratio, currentPalette());
+            picture.setDevicePixelRatio(ratio);
+            placeButtons_[k]->setIcon(QPixmap::fromImage(picture));
+            const QString iou = QString::number(found[k].iou, 'f', 2);
+            placeButtons_[k]->setText(found[k].placement.relief ? tr("%1, relief").arg(iou) : iou);
+            placeButtons_[k]->setToolTip(tr("Put the target there"));
+        }
+        placesTitle_->setVisible(found.size() > 1);
+        places_->setVisible(found.size() > 1);
+        refresh();
+    }
+
+    /// Which of them it is, and what a relief leaves to light.
+    void refreshPlaces(const StudioState& state) {
+        const auto found = studio_.project.places();
+        for (std::size_t k = 0; k < found.size(); ++k)
+            placeButtons_[k]->setChecked(found[k].placement == state.placement);
+        relief_->setChecked(state.placement.relief);
+        relief_->setEnabled(state.field.field && state.field.field->relief);
+        shares_->setVisible(state.placement.relief && relief_->isEnabled());
+        if (!shares_->isVisibleTo(this)) return;
+        const ReliefRoom& room = *state.field.field->relief;
+        const Box placed = boundingBox(cornersOf(state.target.target->box, state.placement.deviceFromTarget()));
+        const double share = std::min(1.0, static_cast<double>((room.top - room.rest) / placed.size().y));
+        shares_->setText(
+            tr("Servos show its heights at %1 %; light shows the rest, undistorted.").arg(std::lround(100.0 * share)));
     }
 
     void addMotion() {
@@ -146,6 +229,7 @@ private:
             shown_.reset();
             return;
         }
+        refreshPlaces(state);
         const glm::vec3 size = target->box.size() * static_cast<float>(state.placement.scale);
         size_->setText(sizeText(size.x, size.y, size.z));
         spin_->setValue(state.playback.spin);
@@ -178,6 +262,10 @@ private:
     }
 
     Studio& studio_;
+    QCheckBox* relief_ = nullptr;
+    QLabel *shares_ = nullptr, *placesTitle_ = nullptr;
+    QWidget* places_ = nullptr;
+    std::array<QToolButton*, 3> placeButtons_{};
     QStackedLayout* stack_ = nullptr;
     Column column_ = makeColumn(this);
     QLabel* name_ = nullptr;

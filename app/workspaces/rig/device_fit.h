@@ -6,7 +6,7 @@
 
 #include <QString>
 
-#include "app/workspaces/rig/fit_relief.h"
+#include "app/workspaces/common/fit_relief.h"
 #include "core/mdf/library_fit.h"
 #include "core/rig/servo_types.h"
 #include "core/rig/shape_resolution.h"

@@ -39,7 +39,11 @@ Project fullProject() {
     project.field = "fields/tablet.mdf";
     project.target = "my files/Kühe & Pferde.glb";
     project.animation = 3;
-    project.placement = {0.1, Angle::radians(-2.345678901234567), {0.1F, -2.5e-7F, 3.0F}};
+    project.placement = {0.1,
+                         Angle::radians(-2.345678901234567),
+                         {0.1F, -2.5e-7F, 3.0F},
+                         glm::normalize(glm::quat(0.5F, 0.1F, -0.7F, 0.3F)),
+                         true};
     project.strokes = {0.0, 1.0, 1.0 / 3.0, 0.1, 1e-300, 0.999999999999999};
     project.matching = {Driver::hand, false, 12.5};
     project.playback = {false, -0.7853981633974483};
@@ -70,6 +74,8 @@ TEST(ProjectFile, ComesBackAsItWasWritten) {
     EXPECT_EQ(back.placement.scale, project.placement.scale);
     EXPECT_EQ(back.placement.yaw, project.placement.yaw);
     EXPECT_EQ(back.placement.translation, project.placement.translation);
+    EXPECT_EQ(back.placement.orientation, project.placement.orientation);
+    EXPECT_TRUE(back.placement.relief);
     EXPECT_EQ(back.strokes, project.strokes);
     EXPECT_EQ(back.matching, project.matching);
     EXPECT_EQ(back.playback, project.playback);
@@ -171,6 +177,8 @@ TEST(ProjectFile, EveryBrokenValueIsNamedWithItsKey) {
         {projectWith("/placement/scale", 0), "placement.scale: is not a number from 1e-06 to 1000000.0"},
         {projectWith("/placement/scale", "big"), "placement.scale: is not a number"},
         {projectWith("/placement/scale", 1e300), "placement.scale: is not a number"},
+        {projectWith("/placement/orientation", {0.0, 0.0, 0.0, 0.0}), "placement.orientation: is no rotation"},
+        {projectWith("/placement/orientation", {0.0, 1.0}), "placement.orientation: is not a list of 4 numbers"},
         {projectWith("/placement/yaw", true), "placement.yaw: is not a number"},
         {projectWith("/placement/translation", {1, 2}), "placement.translation: is not a list of 3 numbers"},
         {projectWith("/placement/translation", {1, 2, 3, 4}), "placement.translation: is not a list of 3 numbers"},

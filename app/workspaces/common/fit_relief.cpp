@@ -1,4 +1,4 @@
-#include "app/workspaces/rig/fit_relief.h"
+#include "app/workspaces/common/fit_relief.h"
 
 #include <algorithm>
 #include <bit>
