@@ -93,6 +93,16 @@ std::vector<glm::quat> orientations(int count) {
     return all;
 }
 
+/// Of a plate its thickness, of other solids a part of their size, metres.
+double meanThickness(const TriangleMesh& mesh) {
+    double area = 0.0;
+    for (const glm::uvec3& t : mesh.triangles) {
+        const glm::dvec3 a(mesh.positions[t.x]);
+        area += 0.5 * glm::length(glm::cross(glm::dvec3(mesh.positions[t.y]) - a, glm::dvec3(mesh.positions[t.z]) - a));
+    }
+    return area > 0.0 ? 2.0 * std::abs(signedVolume(mesh)) / area : 0.0;
+}
+
 /// The best that count and look different.
 std::vector<PlacementCandidate> differentOf(std::vector<PlacementCandidate> all) {
     std::ranges::stable_sort(all, [](const auto& a, const auto& b) { return a.iou > b.iou; });
@@ -112,15 +122,19 @@ public:
     Placer(const Field& field, const Coverage& coverage, const Voting& voting, const Target& target,
            const AutoPlaceOptions& options, const Progress& progress)
         : field_(field), coverage_(coverage), voting_(voting), target_(target), options_(options), progress_(progress),
-          grid_(target, progress.part(0.0, 0.1)), scorer_(coverage, progress.part(0.1, 0.15)) {}
+          grid_(target, progress.part(0.0, 0.1)), scorer_(coverage, progress.part(0.1, 0.15)),
+          thickness_(target.closed ? meanThickness(target.mesh) : INFINITY) {}
 
     AutoPlacement run() {
         const Pose fit = poseOf(fitPlacement(field_, grid_.box()));
         std::vector<Scored> found = distinct(coarseStarts(fit), kCoarseClimbs);
+        const std::vector<Scored> starts(
+            found.begin(), found.begin() + static_cast<std::ptrdiff_t>(std::min(found.size(), kFineClimbs)));
         const double coarse = scorer_.voxelSize();
         climbAll(found, {0.2, 0.2, 0.2, 0.12, 2.0 * coarse, coarse, 2.0 * coarse}, 3, 0.5,
                  [this](const Pose& pose) { return coarseScore(pose); });
         found = distinct(std::move(found), kFineLooks);
+        found.insert(found.end(), starts.begin(), starts.end()); // where a climb went too far for the finer voxels
         found.push_back({0.0, fit});
         found.push_back({0.0, poseOf({})}); // a shape of the device itself, as it stands
         scoreAll(found, 0.55);
@@ -177,6 +191,7 @@ private:
         constexpr double kSlack = 1e-6;
         if (relative < options_.minScale * (1.0 - kSlack) || relative > options_.maxScale * (1.0 + kSlack))
             return false;
+        if (std::exp(pose.logScale) * thickness_ < 0.5 * field_.frame.voxelSize) return false;
         const glm::mat4 deviceFromTarget = placementOf(pose).deviceFromTarget();
         const Box frame = field_.frame.box();
         std::size_t inFrame = 0;
@@ -198,7 +213,9 @@ private:
         if (!counts(pose)) return -1.0;
         Worker& worker = workers_.local();
         const double score = scorer_.score(grid_, placementOf(pose).deviceFromTarget(), worker.coarse);
-        return enoughInside(worker.coarse.wanted.count(), std::pow(scorer_.voxelSize(), 3.0), pose, grid_.volume())
+        constexpr double kMargin = 1.06;
+        return enoughInside(worker.coarse.wanted.count(), std::pow(scorer_.voxelSize(), 3.0), pose,
+                            kMargin * grid_.volume())
                    ? score
                    : -1.0;
     }
@@ -360,6 +377,7 @@ private:
     Progress progress_;
     TargetGrid grid_;
     PlacementScorer scorer_;
+    double thickness_; ///< at scale 1; of a target that is not closed nobody knows it
     SteadyClock clock_;
     tbb::enumerable_thread_specific<Worker> workers_{[this] { return Worker(coverage_); }};
     std::atomic<int> seen_{0};

@@ -145,8 +145,9 @@ Placement reliefPlacement(const ReliefRoom& room, const TriangleMesh& mesh, int 
     const glm::vec3 share = room.reach.size() / glm::max(size, glm::vec3(1e-12F));
     const float scale = std::min(share.x, share.z);
     placement.scale = static_cast<double>(scale);
-    placement.translation = glm::vec3(room.reach.centre().x, room.rest, room.reach.centre().z) -
-                            scale * glm::vec3(turned.centre().x, turned.min.y, turned.centre().z);
+    // As high as the device rises, so that light, which shows it as it is, falls near where it belongs.
+    placement.translation = glm::vec3(room.reach.centre().x, room.top, room.reach.centre().z) -
+                            scale * glm::vec3(turned.centre().x, turned.max.y, turned.centre().z);
     return placement;
 }
 

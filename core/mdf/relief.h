@@ -27,8 +27,8 @@ void voxelizeRelief(const ReliefRoom& room, std::span<const glm::vec3> positions
                     BitColumns& out);
 
 /// Where a target stands to be shown as a relief: one of the 24 orientations along the axes, by `index`, the first of
-/// which has the front (+Z) up and the top (+Y) away from the viewer; stretched over what moves, standing on the rest
-/// surface. Throws InvalidInput for a target without extent.
+/// which has the front (+Z) up and the top (+Y) away from the viewer; stretched over what moves, its highest point as
+/// high as the device rises. Throws InvalidInput for a target without extent.
 [[nodiscard]] Placement reliefPlacement(const ReliefRoom& room, const TriangleMesh& mesh, int index);
 inline constexpr int kReliefPlacements = 24;
 

@@ -160,7 +160,7 @@ TEST(AutoPlace, FindsThePlaceWhereADeviceMoves) {
 
 // An open one has no volume of its own that would have to stay inside.
 TEST_F(PlacementTest, AutoPlaceDoesNotTakeAnOpenTargetOutOfTheDevice) {
-    TriangleMesh mesh = test::boxMesh({0, 0, 0}, {1.0F, 0.8F, 0.9F}, 6);
+    TriangleMesh mesh = test::boxMesh({0, 0, 0}, {1.0F, 0.8F, 0.9F}, 20);
     std::erase_if(mesh.triangles, [&](const glm::uvec3& t) { // the whole bottom
         return std::max({mesh.positions[t.x].y, mesh.positions[t.y].y, mesh.positions[t.z].y}) < 0.01F;
     });

@@ -128,7 +128,7 @@ TEST_F(ReliefTest, EachPlacementLiesAlongTheAxesAndIsStretchedOverWhatMoves) {
         const Box stands = boundingBox(placed(box, at).positions);
         const glm::vec3 share = stands.size() / room_.reach.size();
         EXPECT_NEAR(std::max(share.x, share.z), 1.0F, 1e-3F);
-        EXPECT_NEAR(stands.min.y, room_.rest, 1e-4F);
+        EXPECT_NEAR(stands.max.y, room_.top, 1e-4F);
         for (const glm::quat& other : seen) EXPECT_LT(std::abs(glm::dot(other, at.rotation())), 0.999F) << k;
         seen.push_back(at.rotation());
     }
