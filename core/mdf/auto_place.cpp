@@ -343,8 +343,12 @@ private:
         PlacementCandidate made;
         made.placement = placementOf(pose);
         made.iou = -1.0;
-        voxelizeTarget(field_.frame, {placed(target_.mesh, made.placement), target_.closed, {}}, worker.voxelizer,
-                       made.wanted, progress_.part(0.9, 0.9));
+        if (target_.closed) {
+            const TriangleMesh mesh = placed(target_.mesh, made.placement);
+            worker.voxelizer.voxelize(field_.frame, mesh.positions, mesh.triangles, made.wanted);
+        } else { // winding numbers would take seconds each time
+            grid_.lookUp(field_.frame, made.placement.deviceFromTarget(), made.wanted);
+        }
         made.wanted &= coverage_.domain();
         const double volume = target_.closed ? std::abs(signedVolume(target_.mesh)) : grid_.volume();
         if (made.wanted.count() == 0 || !counts(pose) ||
