@@ -21,7 +21,7 @@ struct AutoPlaceOptions {
     /// Relative to the scale at which the target, turned as it is, just fits the frame above the rest surface.
     double minScale = 0.15;  ///< one flap may be all that moves
     double maxScale = 4.0;   ///< what is sunk into the device may be larger
-    double minInside = 0.5;  ///< share of the target's volume that must stay where the device could show it
+    double minInside = 0.7;  ///< share of the target's volume that must stay where the device could show it
     double minInFrame = 0.9; ///< share that must not be cut off by the frame: what is sunk into the device is not
     ReliefChoice relief = ReliefChoice::never;
 };

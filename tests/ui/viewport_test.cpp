@@ -271,7 +271,7 @@ TEST_F(ViewportGizmoTest, TheHandlesAreDrawnIntoTheFrameAndLightUpUnderThePointe
 TEST_F(ViewportTest, WhatIsSetAgainUnchangedIsNotDrawnAgain) {
     QSignalSpy drawn(&thread, &RenderThread::drawn);
     const Gizmo gizmo{{1.0, {}, kCentre}, kCentre};
-    for (const std::optional<Gizmo> shown : {std::optional<Gizmo>(), std::optional<Gizmo>(gizmo)}) {
+    for (const std::optional<Gizmo>& shown : {std::optional<Gizmo>(), std::optional<Gizmo>(gizmo)}) {
         view.setGizmo(shown);
         ASSERT_TRUE(waitFor([&] { return view.settled(); }));
         drawn.clear();

@@ -1,7 +1,5 @@
 #include "app/workspaces/field/match_numbers.h"
 
-#include <algorithm>
-
 #include <QGridLayout>
 #include <QLabel>
 #include <QPainter>
@@ -38,17 +36,12 @@ QLabel* muted(const QString& text, QWidget* parent) {
     return label;
 }
 
-/// Where the rest of the target is lost, in volumes.
+/// Of the rest of the target what the match itself leaves out; what cannot be shown at all is warned of.
 QString whyNotBetter(const MatchFrame& frame) {
     constexpr double kLittle = 5e-7; // cubic metres: half a cubic centimetre
-    const double beyond = frame.targetVolume * frame.shareBeyondFrame / std::max(1e-9, 1.0 - frame.shareBeyondFrame);
-    const double unreachable = frame.targetVolume * frame.shareUnreachable;
-    const double givenUp = frame.unmatchedVolume - unreachable;
-    QStringList parts;
-    if (beyond > kLittle) parts << QObject::tr("%1 are beyond the frame").arg(volumeText(beyond));
-    if (unreachable > kLittle) parts << QObject::tr("%1 where no actuator reaches").arg(volumeText(unreachable));
-    if (givenUp > kLittle) parts << QObject::tr("%1 are given up for a better whole").arg(volumeText(givenUp));
-    return parts.isEmpty() ? QString() : QObject::tr("Of the target %1.").arg(parts.join(", "));
+    const double givenUp = frame.unmatchedVolume - frame.targetVolume * frame.shareUnreachable;
+    return givenUp > kLittle ? QObject::tr("%1 of the target are given up for a better whole.").arg(volumeText(givenUp))
+                             : QString();
 }
 
 /// A chip, a word and a number in one row.
@@ -105,7 +98,7 @@ MatchNumbers::MatchNumbers(QWidget* parent)
         4);
     rest_->setObjectName("match.rest");
     rest_->setWordWrap(true);
-    rest_->setMinimumHeight(2 * fontMetrics().lineSpacing()); // it stays where it is while a target moves
+    rest_->setMinimumHeight(fontMetrics().lineSpacing()); // what is below stays where it is while a target moves
     grid->addWidget(rest_, 6, 0, 1, 4);
 }
 

@@ -65,7 +65,7 @@ public:
         connect(&studio.document, &StudioDocument::changed, this, [this](StateParts parts) {
             if (parts & (StatePart::target | StatePart::field | StatePart::placement | StatePart::playback)) refresh();
         });
-        refresh();
+        showPlaces();
     }
 
 private:
@@ -98,19 +98,6 @@ private:
 
     void addPlace() {
         column_.layout->addWidget(makeHeading("Place", column_.widget));
-        column_.layout->addWidget(makePlacementForm(studio_.document, column_.widget));
-        column_.layout->addWidget(makeButtons("target.fit", "target.autoPlace"));
-        relief_ = new QCheckBox(tr("Show as &relief"), column_.widget);
-        relief_->setObjectName("target.relief");
-        relief_->setToolTip(tr("Face up, as a head on a coin: the heights are compressed to what the device rises by. "
-                               "Light shows the target as it is."));
-        connect(relief_, &QCheckBox::clicked, this, [this](bool on) {
-            studio_.project.setRelief(on);
-            refresh(); // until a place is found it is as it was
-        });
-        column_.layout->addWidget(relief_);
-        shares_ = makeText("target.shares", "muted", column_.widget);
-        column_.layout->addWidget(shares_);
         placesTitle_ = makeText("target.placesTitle", "muted", column_.widget);
         placesTitle_->setText(tr("Places that were found, and their IoU:"));
         column_.layout->addWidget(placesTitle_);
@@ -133,8 +120,20 @@ private:
             placeButtons_[k] = place;
         }
         column_.layout->addWidget(places_);
+        column_.layout->addWidget(makePlacementForm(studio_.document, column_.widget));
+        column_.layout->addWidget(makeButtons("target.fit", "target.autoPlace"));
+        relief_ = new QCheckBox(tr("Show as &relief"), column_.widget);
+        relief_->setObjectName("target.relief");
+        relief_->setToolTip(tr("Face up, as a head on a coin: the heights are compressed to what the device rises by. "
+                               "Light shows the target as it is."));
+        connect(relief_, &QCheckBox::clicked, this, [this](bool on) {
+            studio_.project.setRelief(on);
+            refresh(); // until a place is found it is as it was
+        });
+        column_.layout->addWidget(relief_);
+        shares_ = makeText("target.shares", "muted", column_.widget);
+        column_.layout->addWidget(shares_);
         connect(&studio_.project, &ProjectService::placesChanged, this, [this] { showPlaces(); });
-        showPlaces();
     }
 
     /// A picture of each: the target on the device, and what is missing or too much in their colours.
