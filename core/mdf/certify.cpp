@@ -85,6 +85,7 @@ public:
         deadline_ = clock.now() + budget;
         stop_ = stop;
         while (stage_ != Stage::done && !isOver()) advance();
+        known_.done = stage_ == Stage::done;
         known_.exact = known_.exact || (stage_ == Stage::done && known_.upperBound <= known_.quality.iou());
         return known_;
     }

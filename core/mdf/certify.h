@@ -17,6 +17,7 @@ struct Certificate {
     State best;              ///< the best state known
     FitQuality quality;      ///< of it
     bool exact = false;      ///< no state is better than `best`
+    bool done = false;       ///< more time would tell no more
     std::size_t boxes = 0;   ///< boxes of states bounded so far
     std::string note;        ///< a sentence where only a trivial bound was possible, else empty
 

@@ -13,8 +13,8 @@ namespace lumorph {
 namespace {
 
 constexpr float kGuard = 1e-3F;    ///< voxels: covers rounding of heights, and of places before snapping
-constexpr float kFlat = 1e-3F;     ///< voxels squared: a triangle of less area seen from above has no plane
-constexpr float kSteepest = 64.0F; ///< slopes beyond it bound nothing
+constexpr double kFlat = 1e-3;     ///< voxels squared: a triangle of less area seen from above has no plane
+constexpr double kSteepest = 64.0; ///< slopes beyond it bound nothing
 constexpr int kMostPathIntervals = 16;
 constexpr int kNone = -1;
 
@@ -212,50 +212,54 @@ void VolumeBounds::Data::passTriangle(const glm::uvec3& triangle, Workspace& wor
     const int z0 = columnOf(std::ceil(low.z), depth), z1 = std::min(columnOf(std::floor(high.z), depth), depth - 1);
     if (std::max(x0, 0) > x1 || std::max(z0, 0) > z1) return;
 
-    const glm::vec3 d1 = v[1]->at - v[0]->at;
-    const glm::vec3 d2 = v[2]->at - v[0]->at;
-    const float area = d1.x * d2.z - d1.z * d2.x;
+    // In double: of a long and thin triangle the differences of these products decide.
+    const glm::dvec3 origin0(v[0]->at);
+    const glm::dvec3 d1 = glm::dvec3(v[1]->at) - origin0;
+    const glm::dvec3 d2 = glm::dvec3(v[2]->at) - origin0;
+    const double area = d1.x * d2.z - d1.z * d2.x;
     // How much an edge can turn: what its ends do differently.
     const auto turn = [&](std::size_t k) {
         glm::vec3 sum = v[0]->rest + v[k]->rest;
         for (std::size_t i = 0; i < axes(); ++i)
             sum += glm::abs(workspace.slopes[corner[k] * axes() + i] - workspace.slopes[corner[0] * axes() + i]);
-        return sum;
+        return glm::dvec3(sum);
     };
-    const glm::vec3 t1 = turn(1), t2 = turn(2);
-    const float change = std::abs(d1.x) * t2.z + std::abs(d2.z) * t1.x + std::abs(d1.z) * t2.x + std::abs(d2.x) * t1.z +
-                         t1.x * t2.z + t1.z * t2.x;
-    const bool leaving = area < -1.001F * change; // the rounding of these few products is far below the guards
+    const glm::dvec3 t1 = turn(1), t2 = turn(2);
+    const double change = std::abs(d1.x) * t2.z + std::abs(d2.z) * t1.x + std::abs(d1.z) * t2.x +
+                          std::abs(d2.x) * t1.z + t1.x * t2.z + t1.z * t2.x;
+    const bool leaving = area < -1.001 * change;
 
     // Any linear function of the corners as one of the place: its slopes along x and z.
-    const auto slopesOf = [&](float a, float b, float c) {
-        return glm::vec2((b - a) * d2.z - (c - a) * d1.z, (c - a) * d1.x - (b - a) * d2.x) / area;
+    const auto slopesOf = [&](double a, double b, double c) {
+        return glm::dvec2((b - a) * d2.z - (c - a) * d1.z, (c - a) * d1.x - (b - a) * d2.x) / area;
     };
     bool hasPlane = std::abs(area) > kFlat;
-    glm::vec2 plane(0.0F);
-    std::array<float, kMostAxes> along{}, alongX{}, alongZ{};
-    float around = 0.0F;
+    glm::dvec2 plane(0.0);
+    std::array<double, kMostAxes> along{}, alongX{}, alongZ{};
+    double around = 0.0;
     if (hasPlane) {
-        plane = slopesOf(v[0]->at.y, v[1]->at.y, v[2]->at.y);
+        plane = slopesOf(origin0.y, static_cast<double>(v[1]->at.y), static_cast<double>(v[2]->at.y));
         hasPlane = std::abs(plane.x) + std::abs(plane.y) < kSteepest;
     }
     if (hasPlane) {
-        around = rest.y + std::abs(plane.x) * rest.x + std::abs(plane.y) * rest.z + kGuard;
+        const glm::dvec3 widest(radius), loosest(rest);
+        around =
+            loosest.y + std::abs(plane.x) * loosest.x + std::abs(plane.y) * loosest.z + static_cast<double>(kGuard);
         for (std::size_t i = 0; i < axes(); ++i) {
-            std::array<float, 3> k{};
+            std::array<double, 3> k{};
             for (std::size_t c = 0; c < 3; ++c) {
-                const glm::vec3& slope = workspace.slopes[corner[c] * axes() + i];
+                const glm::dvec3 slope(workspace.slopes[corner[c] * axes() + i]);
                 k[c] = slope.y - plane.x * slope.x - plane.y * slope.z;
             }
-            const glm::vec2 by = slopesOf(k[0], k[1], k[2]);
+            const glm::dvec2 by = slopesOf(k[0], k[1], k[2]);
             along[i] = k[0];
             alongX[i] = by.x;
             alongZ[i] = by.y;
-            around += std::abs(by.x) * radius.x + std::abs(by.y) * radius.z;
+            around += std::abs(by.x) * widest.x + std::abs(by.y) * widest.z;
         }
     }
 
-    const float side = area < 0.0F ? -1.0F : 1.0F;
+    const float side = area < 0.0 ? -1.0F : 1.0F;
     std::array<glm::vec3, 3> edges{}; // side x (normal, offset): at least -reach inside
     std::array<float, 3> reach{};
     for (std::size_t k = 0; k < 3; ++k) {
@@ -281,12 +285,12 @@ void VolumeBounds::Data::passTriangle(const glm::uvec3& triangle, Workspace& wor
             const std::size_t first = workspace.passingSlopes.size();
             workspace.passingSlopes.resize(first + axes(), 0.0F);
             if (hasPlane) {
-                const float dx = static_cast<float>(x) - v[0]->at.x, dz = static_cast<float>(z) - v[0]->at.z;
-                pass.plane = v[0]->at.y + plane.x * dx + plane.y * dz;
-                pass.rest = around;
-                float all = around;
+                const double dx = x - origin0.x, dz = z - origin0.z;
+                pass.plane = static_cast<float>(origin0.y + plane.x * dx + plane.y * dz);
+                pass.rest = static_cast<float>(around);
+                float all = pass.rest;
                 for (std::size_t i = 0; i < axes(); ++i) {
-                    const float slope = along[i] + alongX[i] * dx + alongZ[i] * dz;
+                    const auto slope = static_cast<float>(along[i] + alongX[i] * dx + alongZ[i] * dz);
                     workspace.passingSlopes[first + i] = slope;
                     all += std::abs(slope);
                 }
