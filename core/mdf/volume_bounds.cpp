@@ -39,6 +39,7 @@ struct BodyBounds {
     std::vector<glm::uvec3> moving; ///< triangles, into the listed vertices
     std::vector<glm::uvec3> still;  ///< likewise
     std::optional<MotionBounds> motion;
+    std::vector<Box> reach; ///< of each vertex that moves, over all states
     std::vector<std::uint64_t> stillParity;    ///< of all columns
     std::vector<std::uint64_t> stillCrossings; ///< a bit where a triangle that stays passes
     std::vector<std::int16_t> stillSigned;     ///< of each column how often they enter, less how often they leave
@@ -141,9 +142,10 @@ void VolumeBounds::Data::addBody(const RigBody& body) {
         const bool movingGroup = std::ranges::any_of(group.actuators, moves);
         const auto first = static_cast<std::uint32_t>(movingGroup ? vertices.size() : rest.size());
         for (const std::uint32_t vertex : group.listed) {
-            if (movingGroup)
+            if (movingGroup) {
                 vertices.push_back(vertex);
-            else
+                made.reach.push_back(coverage.rig().reachOf(vertex));
+            } else
                 rest.push_back(mesh.positions[vertex]);
         }
         for (const glm::uvec3& t : group.triangles) (movingGroup ? made.moving : made.still).push_back(t + first);
@@ -187,6 +189,11 @@ void VolumeBounds::Data::boundVertices(const BodyBounds& of, std::span<const dou
             workspace.slopes[v * axes() + i] = slope;
             bound.radius += glm::abs(slope);
         }
+        // In large boxes the reach over all states is tighter.
+        const Box& reach = of.reach[v];
+        const glm::vec3 farthest = glm::max(glm::abs(reach.max - motion.at[v]), glm::abs(motion.at[v] - reach.min));
+        bound.radius = glm::min(bound.radius, farthest * voxelsPerMetre +
+                                                  glm::vec3(kGuard + snapping, kGuard, kGuard + snapping));
     }
 }
 
