@@ -39,7 +39,7 @@ struct BodyBounds {
     std::vector<glm::uvec3> moving; ///< triangles, into the listed vertices
     std::vector<glm::uvec3> still;  ///< likewise
     std::optional<MotionBounds> motion;
-    std::vector<Box> reach; ///< of each vertex that moves, over all states
+    std::vector<Box> reach;                    ///< of each vertex that moves, over all states
     std::vector<std::uint64_t> stillParity;    ///< of all columns
     std::vector<std::uint64_t> stillCrossings; ///< a bit where a triangle that stays passes
     std::vector<std::int16_t> stillSigned;     ///< of each column how often they enter, less how often they leave
@@ -49,6 +49,7 @@ struct BodyBounds {
 
 struct VolumeBounds::Workspace {
     MotionBox motion;
+    glm::vec3 snapping{0.0F}; ///< voxels: guards of a vertex
     std::vector<GridBound> vertices;
     std::vector<glm::vec3> slopes; ///< [vertex * axes + axis], voxels
     std::vector<GridVertex> snapped;
@@ -178,11 +179,12 @@ void VolumeBounds::Data::boundVertices(const BodyBounds& of, std::span<const dou
     workspace.snapped.resize(count);
     workspace.slopes.resize(count * axes());
     const float snapping = std::ldexp(4.0F, -snap.shift());
+    workspace.snapping = glm::vec3(kGuard + snapping, kGuard, kGuard + snapping);
     for (std::size_t v = 0; v < count; ++v) {
         GridBound& bound = workspace.vertices[v];
         workspace.snapped[v] = snap(motion.at[v]);
         bound.at = (motion.at[v] - origin) * voxelsPerMetre - 0.5F;
-        bound.rest = motion.rest[v] * voxelsPerMetre + glm::vec3(kGuard + snapping, kGuard, kGuard + snapping);
+        bound.rest = motion.rest[v] * voxelsPerMetre + workspace.snapping;
         bound.radius = bound.rest;
         for (std::size_t i = 0; i < axes(); ++i) {
             const glm::vec3 slope = motion.slopes[v * axes() + i] * voxelsPerMetre;
@@ -192,8 +194,7 @@ void VolumeBounds::Data::boundVertices(const BodyBounds& of, std::span<const dou
         // In large boxes the reach over all states is tighter.
         const Box& reach = of.reach[v];
         const glm::vec3 farthest = glm::max(glm::abs(reach.max - motion.at[v]), glm::abs(motion.at[v] - reach.min));
-        bound.radius = glm::min(bound.radius, farthest * voxelsPerMetre +
-                                                  glm::vec3(kGuard + snapping, kGuard, kGuard + snapping));
+        bound.radius = glm::min(bound.radius, farthest * voxelsPerMetre + workspace.snapping);
     }
 }
 
@@ -225,8 +226,13 @@ void VolumeBounds::Data::passTriangle(const glm::uvec3& triangle, Workspace& wor
     const glm::dvec3 d2 = glm::dvec3(v[2]->at) - origin0;
     const double area = d1.x * d2.z - d1.z * d2.x;
     // How much an edge can turn: what its ends do differently.
+    const MotionBox& motion = workspace.motion;
     const auto turn = [&](std::size_t k) {
-        glm::vec3 sum = v[0]->rest + v[k]->rest;
+        glm::vec3 sum = motion.tail[corner[0]] + motion.tail[corner[k]];
+        for (std::size_t p = 0; p < motion.pairs; ++p)
+            sum += glm::abs(motion.curvatures[corner[k] * motion.pairs + p] -
+                            motion.curvatures[corner[0] * motion.pairs + p]);
+        sum = sum * voxelsPerMetre + 2.0F * workspace.snapping;
         for (std::size_t i = 0; i < axes(); ++i)
             sum += glm::abs(workspace.slopes[corner[k] * axes() + i] - workspace.slopes[corner[0] * axes() + i]);
         return glm::dvec3(sum);

@@ -214,6 +214,7 @@ void MotionBounds::Data::boundFree(const FreeVertices& of, std::span<const doubl
         const glm::vec3 extent = glm::abs(mean) + rest;
         out.at[slot] = mean;
         out.rest[slot] = rest + glm::vec3(static_cast<float>(around) + kRounding * (extent.x + extent.y + extent.z));
+        out.tail[slot] = out.rest[slot];
         for (std::size_t g = 0; g < gridded; ++g) out.slopes[slot * axes() + of.axes[ways[g].second]] = slopes[g];
     }
 }
@@ -325,36 +326,42 @@ void MotionBounds::Data::boundSheet(const SheetVertices& of, std::span<const dou
         }
     const PowerExpansion expansion(modes, of.share, lowOfLever, highOfLever);
     const ModePowers& powers = expansion.result();
-    std::vector<float> y(powers.width);
+    std::vector<float> x(powers.width), y(powers.width), z(powers.width);
     for (const SheetVertices::Slot& slot : of.slots) {
         const glm::vec3* const row = modes.modes.data() + slot.row * modes.modeCount;
-        std::fill(y.begin(), y.end(), 0.0F);
-        std::array<float, 1 + SheetModes::kMostActuators> x{}, z{};
-        glm::vec3 rest(slot.leftOut);
+        for (std::vector<float>* sums : {&x, &y, &z}) std::fill(sums->begin(), sums->end(), 0.0F);
+        glm::vec3 tail(slot.leftOut);
         float extent = 0.0F;
         for (std::size_t k = 0; k < modes.modeCount; ++k) {
             const float* const ofMode = powers.values.data() + k * powers.width;
             const glm::vec3 mode = row[k];
-            for (std::size_t i = 0; i < powers.width; ++i) y[i] += mode.y * ofMode[i];
-            for (std::size_t i = 0; i < 1 + levers; ++i) {
+            for (std::size_t i = 0; i < powers.width; ++i) {
                 x[i] += mode.x * ofMode[i];
+                y[i] += mode.y * ofMode[i];
                 z[i] += mode.z * ofMode[i];
             }
             const glm::vec3 size = glm::abs(mode);
-            const float side = powers.quadratic[k] + powers.higher[k];
-            rest += size * glm::vec3(side, powers.higher[k], side);
-            extent += (size.x + size.y + size.z) * (std::abs(ofMode[0]) + side);
+            tail += size * powers.higher[k];
+            extent += (size.x + size.y + size.z) * (std::abs(ofMode[0]) + powers.quadratic[k] + powers.higher[k]);
         }
+        const glm::vec3 place = glm::abs(restPositions[slot.slot]);
+        tail += glm::vec3(kRounding * (extent + place.x + place.y + place.z));
         glm::vec3 at = restPositions[slot.slot] + glm::vec3(x[0], y[0], z[0]);
+        glm::vec3 rest = tail;
         for (std::size_t i = 0; i < levers; ++i)
             for (std::size_t j = i; j < levers; ++j) {
-                const float value = y[powers.square(i, j)];
-                if (i == j) at.y += 0.5F * value; // x_i^2 lies in [0, 1]
-                rest.y += i == j ? 0.5F * std::abs(value) : std::abs(value);
+                const std::size_t which = powers.square(i, j);
+                glm::vec3 value(x[which], y[which], z[which]);
+                if (i == j) { // x_i^2 lies in [0, 1]
+                    value *= 0.5F;
+                    at += value;
+                }
+                rest += glm::abs(value);
+                out.curvatures[slot.slot * out.pairs + which - 1 - levers] = value;
             }
-        const glm::vec3 place = glm::abs(restPositions[slot.slot]);
         out.at[slot.slot] = at;
-        out.rest[slot.slot] = rest + glm::vec3(kRounding * (extent + place.x + place.y + place.z));
+        out.rest[slot.slot] = rest;
+        out.tail[slot.slot] = tail;
         for (std::size_t lever = 0; lever < levers; ++lever)
             if (axisOfLever[lever] >= 0)
                 out.slopes[slot.slot * axes() + static_cast<std::size_t>(axisOfLever[lever])] = {
@@ -379,6 +386,10 @@ void MotionBounds::over(std::span<const double> low, std::span<const double> hig
     out.at = data_->restPositions;
     out.rest.assign(out.at.size(), glm::vec3(0.0F));
     out.slopes.assign(out.at.size() * data_->axes(), glm::vec3(0.0F));
+    const std::size_t levers = data_->axisOfLever.size();
+    out.pairs = levers * (levers + 1) / 2;
+    out.curvatures.assign(out.at.size() * out.pairs, glm::vec3(0.0F));
+    out.tail.assign(out.at.size(), glm::vec3(0.0F));
     for (const FreeVertices& of : data_->free) data_->boundFree(of, low, high, out);
     for (const SheetVertices& of : data_->sheet) data_->boundSheet(of, low, high, out);
 }

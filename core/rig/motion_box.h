@@ -17,6 +17,11 @@ struct MotionBox {
     std::vector<glm::vec3> at;
     std::vector<glm::vec3> rest;
     std::vector<glm::vec3> slopes; ///< [vertex * axes + axis]
+    /// What `rest` holds, where the rig has a sheet: quadratic coefficients, those of squares halved because `at` holds
+    /// the other half, and a bound of all others. Two vertices differ by no more than their coefficients and `tail` do.
+    std::size_t pairs = 0;             ///< of the sheet's axes, a pair of two or of one twice
+    std::vector<glm::vec3> curvatures; ///< [vertex * pairs + pair]
+    std::vector<glm::vec3> tail;       ///< one a vertex, also without a sheet
 };
 
 /// First-order bounds of a rig's motion over boxes of strokes (Taylor models: a linear part and a bound of the rest).
