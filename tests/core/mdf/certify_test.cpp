@@ -205,11 +205,10 @@ TEST(Certify, NoStateOfASheetBeatsItsBound) {
     expectNoStateBeats(coverage, targets, Microseconds{250'000}, 1500);
 }
 
-// Boxes of a sheet's states, against states drawn from them.
-TEST(Certify, EnclosuresOfASheetHoldTheStatesOfTheirBox) {
-    const Rig rig(test::liftedSheetParts());
+/// Boxes of a sheet's states, against states drawn from them.
+void expectEnclosed(const Rig& rig, int resolution, int rounds) {
     constexpr int kLevels = 33;
-    const Coverage coverage(rig, frameOf(rig.reach(), 24), kLevels);
+    const Coverage coverage(rig, frameOf(rig.reach(), resolution), kLevels);
     const VolumeBounds bounds(coverage, {0, 1, 2, 3, 4, 5},
                               std::vector<std::uint8_t>(coverage.domain().columnCount(), 1));
     const auto workspace = VolumeBounds::makeWorkspace();
@@ -218,7 +217,7 @@ TEST(Certify, EnclosuresOfASheetHoldTheStatesOfTheirBox) {
     CoverageScratch scratch;
     BitColumns covered;
     std::mt19937 random(8);
-    for (int round = 0; round < 40; ++round) {
+    for (int round = 0; round < rounds; ++round) {
         State low(6), high(6);
         const int width = 1 << round % 6;
         for (std::size_t i = 0; i < 6; ++i) {
@@ -245,6 +244,21 @@ TEST(Certify, EnclosuresOfASheetHoldTheStatesOfTheirBox) {
                 << "round " << round;
         }
     }
+}
+
+TEST(Certify, EnclosuresOfASheetHoldTheStatesOfTheirBox) { expectEnclosed(Rig(test::liftedSheetParts()), 24, 30); }
+TEST(Certify, EnclosuresOfTheTabletHoldTheStatesOfTheirBox) { expectEnclosed(bakedTablet(), 33, 30); }
+
+TEST(Certify, NoStateOfTheTabletBeatsItsBound) {
+    const Rig rig = bakedTablet();
+    const Coverage coverage(rig, frameOf(rig.reach(), 24), 33);
+    std::mt19937 random(14);
+    std::vector<BitColumns> targets;
+    for (int k = 0; k < 2; ++k) targets.push_back(hillyTarget(coverage, random));
+    CoverageScratch scratch;
+    for (const State& state : quasiRandomStates(rig.actuatorCount(), 33, 2, 5))
+        coverage.covered(state, targets.emplace_back(), scratch);
+    expectNoStateBeats(coverage, targets, Microseconds{200'000}, 800);
 }
 
 TEST(Certify, HundredsOfPinsAreSolvedExactly) {
