@@ -205,12 +205,14 @@ TEST(Certify, NoStateOfASheetBeatsItsBound) {
     expectNoStateBeats(coverage, targets, Microseconds{250'000}, 1500);
 }
 
-/// Boxes of a sheet's states, against states drawn from them.
+/// Boxes of a rig's states, against states drawn from them.
 void expectEnclosed(const Rig& rig, int resolution, int rounds) {
     constexpr int kLevels = 33;
     const Coverage coverage(rig, frameOf(rig.reach(), resolution), kLevels);
-    const VolumeBounds bounds(coverage, {0, 1, 2, 3, 4, 5},
-                              std::vector<std::uint8_t>(coverage.domain().columnCount(), 1));
+    const std::size_t count = rig.actuatorCount();
+    std::vector<std::uint16_t> actuators;
+    for (std::size_t a = 0; a < count; ++a) actuators.push_back(static_cast<std::uint16_t>(a));
+    const VolumeBounds bounds(coverage, actuators, std::vector<std::uint8_t>(coverage.domain().columnCount(), 1));
     const auto workspace = VolumeBounds::makeWorkspace();
     VolumeEnclosure enclosure;
     BoxBound boxBound;
@@ -218,9 +220,9 @@ void expectEnclosed(const Rig& rig, int resolution, int rounds) {
     BitColumns covered;
     std::mt19937 random(8);
     for (int round = 0; round < rounds; ++round) {
-        State low(6), high(6);
+        State low(count), high(count);
         const int width = 1 << round % 6;
-        for (std::size_t i = 0; i < 6; ++i) {
+        for (std::size_t i = 0; i < count; ++i) {
             low[i] = Level{static_cast<int>(random() % static_cast<unsigned>(kLevels - width))};
             high[i] = Level{low[i].index + static_cast<int>(random() % static_cast<unsigned>(width + 1))};
         }
@@ -229,8 +231,8 @@ void expectEnclosed(const Rig& rig, int resolution, int rounds) {
         boxBound.set(enclosure, target, coverage.domain());
         const double bound = boxBound.at(0.7, -1e9);
         for (int draw = 0; draw < 40; ++draw) {
-            State state(6);
-            for (std::size_t i = 0; i < 6; ++i) {
+            State state(count);
+            for (std::size_t i = 0; i < count; ++i) {
                 const int span = high[i].index - low[i].index;
                 state[i] =
                     Level{low[i].index + (draw < 20 ? static_cast<int>(random() % 2) * span
@@ -246,8 +248,26 @@ void expectEnclosed(const Rig& rig, int resolution, int rounds) {
     }
 }
 
-TEST(Certify, EnclosuresOfASheetHoldTheStatesOfTheirBox) { expectEnclosed(Rig(test::liftedSheetParts()), 24, 30); }
-TEST(Certify, EnclosuresOfTheTabletHoldTheStatesOfTheirBox) { expectEnclosed(bakedTablet(), 33, 30); }
+struct EnclosedCase {
+    const char* name;
+    Rig (*make)();
+    int resolution;
+    int rounds;
+};
+class CertifyEnclosures : public testing::TestWithParam<EnclosedCase> {};
+
+TEST_P(CertifyEnclosures, HoldTheStatesOfTheirBox) {
+    expectEnclosed(GetParam().make(), GetParam().resolution, GetParam().rounds);
+}
+
+INSTANTIATE_TEST_SUITE_P(Rigs, CertifyEnclosures,
+                         testing::Values(EnclosedCase{"sheet", [] { return Rig(test::liftedSheetParts()); }, 24, 24},
+                                         EnclosedCase{"tablet", &bakedTablet, 33, 24},
+                                         EnclosedCase{"cutTablet", [] { return cutTabletRig(); }, 24, 12},
+                                         EnclosedCase{"ribbon", &ribbonRig, 16, 12},
+                                         EnclosedCase{"hills", &hillsRig, 24, 12},
+                                         EnclosedCase{"chambers", [] { return cushionRig(); }, 20, 12}),
+                         [](const auto& rig) { return rig.param.name; });
 
 TEST(Certify, NoStateOfTheTabletBeatsItsBound) {
     const Rig rig = bakedTablet();
