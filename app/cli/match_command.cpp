@@ -1,4 +1,6 @@
+#include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <cstdio>
 #include <memory>
 #include <optional>
@@ -12,6 +14,7 @@
 #include "core/geometry/gltf_reader.h"
 #include "core/geometry/mesh_file.h"
 #include "core/mdf/auto_place.h"
+#include "core/mdf/certify.h"
 #include "core/mdf/clip.h"
 #include "core/mdf/refine.h"
 #include "core/mdf/voting.h"
@@ -28,6 +31,7 @@ struct MatchArguments {
     TargetArguments target;
     std::string method = "voting";
     double budgetMilliseconds = 10.0;
+    double certifySeconds = 0.0; ///< 0: no certificate
     bool autoPlace = false;
     std::string relief = "auto";
     std::string animation;
@@ -58,6 +62,7 @@ struct Result {
     FitQuality quality;
     std::size_t unreachable = 0; ///< target voxels that no actuator can cover
     std::optional<Refinement> refinement;
+    std::optional<Certificate> certificate;
     std::optional<AutoPlacement> placement;
     double voxelizeMilliseconds = 0.0;
     double matchMilliseconds = 0.0;
@@ -96,6 +101,26 @@ void addWarnings(const Matcher& matcher, const BitColumns& wanted, bool autoPlac
                                       "' can change; it rests.");
 }
 
+/// Bounds what any state of the device reaches. Refinement takes a better state that is found on the way.
+void certify(const Matcher& matcher, const BitColumns& wanted, const MatchArguments& arguments, const Session& session,
+             Result& result) {
+    constexpr Microseconds kSlice{20'000}; // between looks at whether it was interrupted
+    const SteadyClock clock;
+    const Microseconds end = clock.now() + Microseconds(static_cast<std::int64_t>(1e6 * arguments.certifySeconds));
+    Certifier certifier(matcher.coverage);
+    certifier.start(wanted, result.state);
+    Certificate certificate;
+    do {
+        session.throwIfCancelled();
+        certificate = certifier.tighten(std::clamp(end - clock.now(), Microseconds{0}, kSlice), clock);
+    } while (!certificate.done && clock.now() < end);
+    if (result.refinement) {
+        result.state = certificate.best;
+        result.quality = certificate.quality;
+    }
+    result.certificate = std::move(certificate);
+}
+
 Result matchVoxels(const Matcher& matcher, const TargetVoxels& target, const MatchArguments& arguments,
                    const std::optional<AutoPlacement>& placement, const Session& session) {
     Result result;
@@ -127,6 +152,7 @@ Result matchVoxels(const Matcher& matcher, const TargetVoxels& target, const Mat
     } else {
         result.quality = refiner.qualityOf(wanted, result.state);
     }
+    if (arguments.certifySeconds > 0.0) certify(matcher, wanted, arguments, session, result);
     addWarnings(matcher, wanted, arguments.autoPlace, result);
     return result;
 }
@@ -175,6 +201,16 @@ nlohmann::json resultJson(const Matcher& matcher, const Result& result, const Ma
         json["statesSeen"] = result.refinement->statesSeen;
         json["converged"] = result.refinement->converged;
     }
+    if (result.certificate) {
+        const Certificate& known = *result.certificate;
+        json["upperBound"] = known.upperBound;
+        json["gap"] = known.upperBound - result.quality.iou();
+        json["certificate"] = {{"exact", known.exact},
+                               {"bestState", stateJson(known.best)},
+                               {"bestIou", known.quality.iou()},
+                               {"boxes", known.boxes}};
+        if (!known.note.empty()) json["certificate"]["note"] = known.note;
+    }
     if (result.placement) {
         const Placement& p = result.placement->placement;
         json["placement"] = placementJson(p);
@@ -190,6 +226,18 @@ nlohmann::json resultJson(const Matcher& matcher, const Result& result, const Ma
                                             {"placement", placementJson(one.placement)}});
     }
     return json;
+}
+
+void printCertificate(const Certificate& known, double iou) {
+    // Rounded up: the bound holds as it is printed.
+    const double bound = std::min(1.0, std::ceil(1000.0 * known.upperBound - 1e-9) / 1000.0);
+    if (known.exact && iou == known.quality.iou())
+        std::printf("  no state of this device comes nearer: this is the best possible\n");
+    else
+        std::printf("  no state of this device comes nearer than %.3f; this one is at most %.3f from the best "
+                    "possible\n",
+                    bound, bound - iou + 5e-4);
+    if (!known.note.empty()) std::printf("  %s\n", known.note.c_str());
 }
 
 void printResult(const Matcher& matcher, const Result& result) {
@@ -211,6 +259,7 @@ void printResult(const Matcher& matcher, const Result& result) {
         std::printf(", refine %.3f ms over %d states (IoU %.3f by voting)", result.refineMilliseconds,
                     result.refinement->statesSeen, result.refinement->before.iou());
     std::printf("\n");
+    if (result.certificate) printCertificate(*result.certificate, result.quality.iou());
 }
 
 const Model::Animation& chooseAnimation(const Model& model, const std::string& path, const std::string& name) {
@@ -326,11 +375,16 @@ void addMatchCommand(CLI::App& app, Session& session) {
     command->add_option("--budget-ms", a->budgetMilliseconds, "Time for refinement")
         ->check(numberBetween(0.001, 1e6))
         ->capture_default_str();
+    command
+        ->add_option("--certify", a->certifySeconds,
+                     "Seconds to find out how much better any state of the device could be")
+        ->check(numberBetween(0.001, 3600.0));
     command->add_option("--repeat", a->target.repeat, "Repeat each stage and give the median")
         ->check(CLI::Range(1, 100000))
         ->capture_default_str();
     command->add_option("--animation", a->animation, "Match an animation of the file over time: its name, or first")
-        ->excludes("--auto-place");
+        ->excludes("--auto-place")
+        ->excludes("--certify");
     command->add_option("--fps", a->framesPerSecond, "Frames a second of that")
         ->check(numberBetween(1.0, 240.0))
         ->capture_default_str();

@@ -359,6 +359,49 @@ void Coverage::coveredAt(std::span<const double> strokes, BitColumns& out, Cover
     pieces_->removeBodyAndTail(all, out.words());
 }
 
+std::vector<std::uint8_t> Coverage::columnsChangedBy(std::size_t actuator) const {
+    std::vector<std::uint8_t> changed(pieces_->domain.columnCount(), 0);
+    CoverageScratch scratch;
+    const ColumnRange all = columnsOf(pieces_->frame);
+    const auto changesAll = [&](const ColumnRange& range) {
+        pieces_->eachSharedRow(range, all, [&](std::size_t, std::size_t to, std::size_t count) {
+            std::fill_n(changed.begin() + static_cast<std::ptrdiff_t>(to / pieces_->wordsPerColumn),
+                        count / pieces_->wordsPerColumn, std::uint8_t{1});
+        });
+    };
+    const auto compare = [&](const ColumnRange& range, auto&& wordsAt) {
+        const std::span<const std::uint64_t> rest = wordsAt(0);
+        for (int level = 1; level < pieces_->levels; ++level) {
+            const std::span<const std::uint64_t> words = wordsAt(level);
+            pieces_->eachSharedRow(range, all, [&](std::size_t from, std::size_t to, std::size_t count) {
+                for (std::size_t i = 0; i < count; ++i)
+                    if (((words[from + i] ^ rest[from + i]) & pieces_->domain.words()[to + i]) != 0)
+                        changed[(to + i) / pieces_->wordsPerColumn] = 1;
+            });
+        }
+    };
+    for (std::size_t b = 0; b < pieces_->bodies.size(); ++b) {
+        const RigBody& of = pieces_->bodies[b];
+        if (!std::ranges::binary_search(of.actuators, static_cast<std::uint16_t>(actuator))) continue;
+        if (of.sweeps()) {
+            if (of.actuators.size() > 1)
+                changesAll(of.range);
+            else
+                compare(of.range, [&](int level) { return pieces_->sweepAtLevel(b, level, scratch); });
+            continue;
+        }
+        for (std::size_t g = 1; g < of.groups.size(); ++g) {
+            const RigGroup& group = of.groups[g];
+            if (!std::ranges::binary_search(group.actuators, static_cast<std::uint16_t>(actuator))) continue;
+            if (group.actuators.size() > 1)
+                changesAll(group.range);
+            else
+                compare(group.range, [&](int level) { return pieces_->groupAtLevel(b, g, level, scratch); });
+        }
+    }
+    return changed;
+}
+
 std::vector<std::pair<std::size_t, std::size_t>> Coverage::coupledPairs() const {
     std::set<std::pair<std::size_t, std::size_t>> pairs;
     const auto add = [&](const std::vector<std::uint16_t>& actuators) {

@@ -70,6 +70,9 @@ public:
 
     /// The columns whose coverage this actuator can change, at least.
     [[nodiscard]] const ColumnRange& columnsMovedBy(std::size_t actuator) const noexcept;
+    /// The columns, one byte each, whose coverage this actuator can change: exactly where it moves its triangles alone,
+    /// else at least. Rasterises its pieces at every level.
+    [[nodiscard]] std::vector<std::uint8_t> columnsChangedBy(std::size_t actuator) const;
     /// Pairs of actuators that move the same triangles or sweep the same body, the lower index first.
     [[nodiscard]] std::vector<std::pair<std::size_t, std::size_t>> coupledPairs() const;
     /// In how many equal steps the path from rest to `strokes` is sampled; 1 when the solid holds its path.

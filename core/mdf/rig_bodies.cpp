@@ -118,7 +118,7 @@ std::vector<RigBody> groupTriangles(const Rig& rig, const VoxelFrame& frame) {
     for (auto& [owner, groups] : sorted) {
         RigBody& made = bodies.emplace_back();
         for (auto& [key, triangles] : groups) { // the empty key comes first
-            RigGroup& group = made.groups.emplace_back(RigGroup{key, std::nullopt, std::move(triangles), {}});
+            RigGroup& group = made.groups.emplace_back(RigGroup{key, std::nullopt, {}, std::move(triangles), {}});
             for (const glm::uvec3& t : group.triangles)
                 for (const std::uint32_t v : {t.x, t.y, t.z}) local[v] = kUnseen;
             Box box;
@@ -135,6 +135,7 @@ std::vector<RigBody> groupTriangles(const Rig& rig, const VoxelFrame& frame) {
             if (!vertices.empty()) {
                 group.vertices = rig.subset(vertices);
                 group.range = columnsOfBox(frame, box);
+                group.listed = std::move(vertices);
             }
             made.range.include(group.range);
             made.actuators.insert(made.actuators.end(), key.begin(), key.end());

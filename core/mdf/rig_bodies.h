@@ -14,6 +14,7 @@ namespace lumorph {
 struct RigGroup {
     std::vector<std::uint16_t> actuators; ///< ascending; none: the part that stays
     std::optional<Rig::Subset> vertices;  ///< of the rig; none without triangles
+    std::vector<std::uint32_t> listed;    ///< their indices in the rig
     std::vector<glm::uvec3> triangles;    ///< into the subset
     ColumnRange range;                    ///< columns it can reach
 };

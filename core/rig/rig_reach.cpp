@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <utility>
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
@@ -12,14 +13,6 @@
 
 namespace lumorph {
 namespace {
-
-/// Bounds on how one stroke moves a vertex, over all states.
-struct Sensitivity {
-    std::uint16_t actuator = 0;
-    double first = 0.0;  ///< metres a stroke
-    double second = 0.0; ///< metres a stroke squared, between kinks
-    double kink = 0.0;   ///< metres a stroke: how much the first derivative may jump within a grid step
-};
 
 /// Follows a vertex along its steps and bounds the first and second derivative of its position by
 /// each stroke. `way` bounds how far it can have moved from rest so far.
@@ -39,7 +32,7 @@ public:
         if (skinDue) skin();
     }
 
-    [[nodiscard]] std::vector<Sensitivity>& parts() noexcept { return parts_; }
+    [[nodiscard]] std::vector<StrokeBound>& parts() noexcept { return parts_; }
 
 private:
     void add(const MotionStep& step, const CompiledActuator& actuator) {
@@ -91,7 +84,7 @@ private:
         const double h = std::abs(glm::dot(rest_ - glm::dvec3(bend.origin), glm::dvec3(bend.normal))) + way_;
         const double curvature = amount / bend.length;
         const double stretch = 1.0 + h * curvature;
-        for (Sensitivity& part : parts_) {
+        for (StrokeBound& part : parts_) {
             part.kink = stretch * part.kink + 2.0 * h * curvature * part.first;
             part.second = stretch * part.second + curvature * (1.0 + stretch) * part.first * part.first;
             part.first *= stretch;
@@ -111,7 +104,7 @@ private:
         for (const Skeleton::Joint& joint : skeleton.joints)
             rest.push_back(joint.parent < 0 ? glm::dmat4(joint.localRest)
                                             : rest[joint.parent] * glm::dmat4(joint.localRest));
-        std::map<std::uint16_t, Sensitivity> sums;
+        std::map<std::uint16_t, StrokeBound> sums;
         for (int k = 0; k < 4; ++k) {
             const double weight = skeleton.vertexWeights[vertex_][k];
             if (weight == 0.0) continue;
@@ -126,7 +119,7 @@ private:
                     const auto& joint = std::get<SkinJoint>(core_.parts.actuators[a].deformer);
                     if (joint.joint != j) continue;
                     const double range = joint.max - joint.min;
-                    Sensitivity& sum = sums[a];
+                    StrokeBound& sum = sums[a];
                     sum.actuator = a;
                     if (joint.motion == SkinJoint::Motion::rotate) {
                         sum.first += weight * range * chain;
@@ -142,7 +135,7 @@ private:
         for (const auto& [index, sum] : sums) push(sum);
     }
 
-    void push(const Sensitivity& part) {
+    void push(const StrokeBound& part) {
         parts_.push_back(part);
         way_ += part.first;
     }
@@ -151,7 +144,7 @@ private:
     std::uint32_t vertex_;
     glm::dvec3 rest_;
     double way_ = 0.0;
-    std::vector<Sensitivity> parts_;
+    std::vector<StrokeBound> parts_;
 };
 
 bool movesAdditively(const RigCore& core, std::uint32_t vertex) {
@@ -246,6 +239,10 @@ void includeSheet(const RigCore& core, std::vector<Box>& boxes) {
 
 } // namespace
 
+std::vector<StrokeBound> strokeBounds(const RigCore& core, std::uint32_t vertex) {
+    return std::move(Bounds(core, vertex).parts());
+}
+
 std::vector<Box> reachBoxes(const std::shared_ptr<const RigCore>& core) {
     const std::size_t vertexCount = core->parts.restMesh.positions.size();
     std::vector<Box> boxes(vertexCount);
@@ -258,7 +255,7 @@ std::vector<Box> reachBoxes(const std::shared_ptr<const RigCore>& core) {
         Bounds bounds(*core, vertex);
         auto& parts = bounds.parts();
         const glm::vec3 rest = core->parts.restMesh.positions[vertex];
-        std::erase_if(parts, [](const Sensitivity& part) { return part.first == 0.0; });
+        std::erase_if(parts, [](const StrokeBound& part) { return part.first == 0.0; });
         if (parts.empty()) {
             boxes[vertex] = {rest, rest};
             continue;

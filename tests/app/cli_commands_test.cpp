@@ -158,6 +158,17 @@ TEST_F(CommandLine, MatchPrintsTheResultOnly) {
     EXPECT_THAT(succeed({"match", w["field.mdf"], w["target.obj"]}).out, HasSubstr("IoU"));
 }
 
+TEST_F(CommandLine, MatchCertifiesHowMuchBetterAStateCouldBe) {
+    const std::vector<std::string> command{"match", w["field.mdf"], w["target.obj"], "--method", "refined", "--certify",
+                                           "30"};
+    std::vector<std::string> asJson = command;
+    asJson.emplace_back("--json");
+    const nlohmann::json result = succeed(asJson).json();
+    EXPECT_NEAR(result["gap"].get<double>(), 0.0, 1e-12) << "three actuators of five levels are solved";
+    EXPECT_DOUBLE_EQ(result["upperBound"].get<double>(), result["iou"].get<double>());
+    EXPECT_THAT(succeed(command).out, HasSubstr("this is the best possible"));
+}
+
 TEST_F(CommandLine, MatchGivesTheSameStateForMeshAndGrid) {
     nlohmann::json fromMesh = succeed({"match", w["field.mdf"], w["target.obj"], "--json"}).json();
     succeed({"voxelize", w["target.obj"], "--like", w["field.mdf"], "-o", w["t.nrrd"]});

@@ -96,6 +96,8 @@ TEST_F(CommandLineErrors, WrongUsageExitsWithTwo) {
         {2, {"match", "{field.mdf}", "{target.obj}", "--fit", "--auto-place"}, "--fit"},
         {2, {"match", "{field.mdf}", "{target.obj}", "--budget-ms", "nan"}, "--budget-ms"},
         {2, {"match", "{field.mdf}", "{target.obj}", "--budget-ms", "0"}, "--budget-ms"},
+        {2, {"match", "{field.mdf}", "{target.obj}", "--certify", "nan"}, "--certify"},
+        {2, {"match", "{field.mdf}", "{target.obj}", "--certify", "0"}, "--certify"},
         {2, {"match", "{field.mdf}", "{target.obj}", "--repeat", "0"}, "--repeat"},
         {2, {"match", "{field.mdf}", "{target.obj}", "--csv", "{x.csv}"}, "--animation"},
         {2, {"match", "{field.mdf}", "{target.obj}", "--picture", "-"}, "--picture"},

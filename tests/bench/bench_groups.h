@@ -22,6 +22,7 @@ void benchLoop(const Filter& filter, Report& report);
 void benchLive(const Filter& filter, Report& report);
 void benchRefine(const Filter& filter, Report& report);
 void benchPlacement(const Filter& filter, Report& report);
+void benchCertify(const Filter& filter, Report& report);
 void benchScaling(const Filter& filter, Report& report);
 void benchFrame(const Filter& filter, Report& report);
 void benchDevices(const Filter& filter, Report& report);
