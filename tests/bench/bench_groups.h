@@ -21,6 +21,7 @@ void benchBuild(const Filter& filter, Report& report);
 void benchLoop(const Filter& filter, Report& report);
 void benchLive(const Filter& filter, Report& report);
 void benchRefine(const Filter& filter, Report& report);
+void benchPeers(const Filter& filter, Report& report);
 void benchScaling(const Filter& filter, Report& report);
 void benchFrame(const Filter& filter, Report& report);
 void benchDevices(const Filter& filter, Report& report);

@@ -58,9 +58,9 @@ FrameCommands frameByFrame(const Coverage& coverage, const Moving& moving) {
     return commands;
 }
 
-// Against every sequence of commands at whole levels.
+// Against every sequence of commands at rest, at half and at full stroke.
 TEST(ClipPlan, ReachesWhatTheBestOfAllCommandsReaches) {
-    constexpr int kLevels = 4, kFrames = 3;
+    constexpr int kLevels = 5, kFrames = 3, kCommands = 3;
     constexpr double kSeconds = 0.35;
     const Rig rig = test::lifterRig();
     const Field field = fieldOf(rig, kLevels);
@@ -82,23 +82,23 @@ TEST(ClipPlan, ReachesWhatTheBestOfAllCommandsReaches) {
             [&](std::size_t frame, const std::vector<MotionState>& now) {
                 if (frame == kFrames) return 0.0;
                 double most = 0.0;
-                for (int code = 0; code < kLevels * kLevels * kLevels; ++code) {
+                for (int code = 0; code < kCommands * kCommands * kCommands; ++code) {
                     std::vector<MotionState> next;
                     std::vector<double> strokes;
-                    for (int i = 0, rest = code; i < 3; ++i, rest /= kLevels) {
-                        const double command = static_cast<double>(rest % kLevels) / (kLevels - 1);
+                    for (int i = 0, rest = code; i < 3; ++i, rest /= kCommands) {
+                        const double command = static_cast<double>(rest % kCommands) / (kCommands - 1);
                         const auto at = static_cast<std::size_t>(i);
                         next.push_back(advance(now[at], command, kSeconds, limits[at]));
                         strokes.push_back(next.back().position);
                     }
                     coverage.coveredAt(strokes, covered, scratch);
-                    most = std::max(most, intersectionOverUnion(covered, moving.targets[frame]) + best(frame + 1, next));
+                    most =
+                        std::max(most, intersectionOverUnion(covered, moving.targets[frame]) + best(frame + 1, next));
                 }
                 return most;
             };
         all += best(0, std::vector<MotionState>(3)) / kFrames;
-        const FrameCommands commands =
-            planner.plan(std::vector<MotionState>(3), moving.targets, moving.wanted);
+        const FrameCommands commands = planner.plan(std::vector<MotionState>(3), moving.targets, moving.wanted);
         ASSERT_EQ(commands.size(), static_cast<std::size_t>(kFrames));
         planned += reachedBy(coverage, moving, commands, kSeconds);
         alone += reachedBy(coverage, moving, frameByFrame(coverage, moving), kSeconds);
@@ -129,8 +129,7 @@ TEST(ClipPlan, ReachesMoreThanFrameByFrameUnderTheSameLimits) {
             }
         }
         const Moving moving = shownBy(coverage, states);
-        const FrameCommands commands =
-            planner.plan(std::vector<MotionState>(3), moving.targets, moving.wanted);
+        const FrameCommands commands = planner.plan(std::vector<MotionState>(3), moving.targets, moving.wanted);
         const double with = reachedBy(coverage, moving, commands, kSeconds);
         const double without = reachedBy(coverage, moving, frameByFrame(coverage, moving), kSeconds);
         EXPECT_GT(with, without) << seed;
