@@ -9,8 +9,8 @@
 namespace lumorph {
 namespace {
 
-/// How much of the past makes a trend: several frames, and no more than the motion lags behind.
-constexpr double kPastSeconds = 0.25;
+/// How much of the past makes a trend. A longer one passes the end of a change by more than two levels of 33.
+constexpr double kPastSeconds = 0.15;
 
 } // namespace
 

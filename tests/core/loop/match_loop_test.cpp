@@ -170,6 +170,36 @@ TEST_F(MatchLoopTest, ClassesAndVolumesAgreeWithEveryVoxel) {
     }
 }
 
+// R19: actuators are told where the target will be when they come, and move no faster for it.
+TEST_F(MatchLoopTest, ComesNearerToATargetThatMovesThanByFollowingIt) {
+    MatchWish wish = wishFor(field_, movingTarget());
+    wish.budget = std::chrono::seconds(10);
+    MotionModel following(motionLimits(field_->rig));
+    CoverageScratch scratch;
+    BitColumns covered;
+    double led = 0.0, followed = 0.0;
+    std::vector<double> last(3, 0.0);
+    for (int k = 0; k < 240; ++k) {
+        const double passed = k == 0 ? 0.0 : kFrame;
+        const auto frame = loop_.step(wish, passed);
+        led += frame->iouEstimated / 240;
+        field_->coverage.coveredAt(following.step(frame->wantedStrokes, passed), covered, scratch);
+        followed += intersectionOverUnion(covered, voxelsOf(*frame)) / 240;
+        for (std::size_t i = 0; i < 3; ++i)
+            EXPECT_LE(std::abs(frame->estimatedStrokes[i] - last[i]),
+                      field_->rig.actuators()[i].maxVelocity * kFrame + 1e-9);
+        last = frame->estimatedStrokes;
+    }
+    std::printf("led %.4f, followed %.4f\n", led, followed);
+    EXPECT_GT(led, followed + 0.01);
+    // Once it stands still, the actuators are told what it wants.
+    wish.playing = false;
+    auto frame = loop_.step(wish, kFrame);
+    for (int k = 0; k < 400 && !loop_.settled(); ++k) frame = loop_.step(wish, kFrame);
+    EXPECT_TRUE(loop_.settled());
+    EXPECT_EQ(frame->estimatedStrokes, frame->wantedStrokes);
+}
+
 TEST_F(MatchLoopTest, WhatStandsStillIsNotWorkedOutAgain) {
     const test::TickingClock clock;
     MatchLoop loop(clock);
