@@ -105,7 +105,7 @@ TEST(MatchQuality, AnimationKeepsToTheVelocityLimits) {
 TEST(MatchQuality, AnimationIsReachedBetterByLookingAhead) {
     const auto reached = [](const char* animation, const char* seconds) {
         return matchJson({"match", resource("models/tablet.mdf"), resource(animation), "--animation", "first", "--fps",
-                          "20", "--json", "--look-ahead", seconds});
+                          "10", "--json", "--look-ahead", seconds});
     };
     for (const char* animation : {"targets/swell.glb", "targets/bloom.glb"}) {
         const nlohmann::json alone = reached(animation, "0");
