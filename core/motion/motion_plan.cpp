@@ -22,7 +22,7 @@ double shareOf(std::size_t index, std::size_t count) {
 }
 
 /// Linear between evenly spaced values over [0, 1].
-double between(std::span<const float> values, double at) {
+double interpolated(std::span<const float> values, double at) {
     const double place = std::clamp(at, 0.0, 1.0) * static_cast<double>(values.size() - 1);
     const std::size_t low = std::min(static_cast<std::size_t>(place), values.size() - 2);
     const double share = place - static_cast<double>(low);
@@ -91,7 +91,7 @@ MotionPlan MotionPlanner::plan(MotionState start, std::span<const float> gains, 
     for (std::size_t k = frames; k-- > 1;) {
         const std::span<const float> row = gains.subspan(k * count, count);
         for (std::size_t p = 0; p < kPositions; ++p) {
-            const auto gain = static_cast<float>(between(row, shareOf(p, kPositions)));
+            const auto gain = static_cast<float>(interpolated(row, shareOf(p, kPositions)));
             for (std::size_t v = 0; v < kVelocities; ++v)
                 whole[p * kVelocities + v] = gain + worth[k * kNodes + p * kVelocities + v];
         }
@@ -106,7 +106,7 @@ MotionPlan MotionPlanner::plan(MotionState start, std::span<const float> gains, 
         MotionState next = now;
         const auto consider = [&](double command) {
             const MotionState to = advance(now, command, seconds_, limits_);
-            const double value = between(row, to.position) + static_cast<double>(valueAt(later, to)) -
+            const double value = interpolated(row, to.position) + static_cast<double>(valueAt(later, to)) -
                                  kCostOfWay * std::abs(to.position - now.position);
             if (value <= highest) return;
             highest = value;
@@ -137,8 +137,8 @@ MotionPlan MotionPlanner::follow(MotionState start, std::span<const double> comm
     plan.commands.assign(commands.begin(), commands.end());
     for (std::size_t k = 0; k < commands.size(); ++k) {
         const MotionState to = advance(start, commands[k], seconds_, limits_);
-        plan.gain +=
-            between(gains.subspan(k * count, count), to.position) - kCostOfWay * std::abs(to.position - start.position);
+        plan.gain += interpolated(gains.subspan(k * count, count), to.position) -
+                     kCostOfWay * std::abs(to.position - start.position);
         plan.states.push_back(to);
         start = to;
     }

@@ -18,7 +18,7 @@
 namespace lumorph {
 namespace {
 
-Field fieldOf(const Rig& rig, int levels) {
+Field coarseField(const Rig& rig, int levels) {
     BuildOptions options;
     options.resolution = 12;
     options.levels = levels;
@@ -63,7 +63,7 @@ TEST(ClipPlan, ReachesWhatTheBestOfAllCommandsReaches) {
     constexpr int kLevels = 5, kFrames = 3, kCommands = 3;
     constexpr double kSeconds = 0.35;
     const Rig rig = test::lifterRig();
-    const Field field = fieldOf(rig, kLevels);
+    const Field field = coarseField(rig, kLevels);
     const Coverage coverage(rig, field.frame, kLevels);
     const std::vector<MotionLimits> limits = motionLimits(rig);
     ClipPlanner planner(coverage, kSeconds);
@@ -113,7 +113,7 @@ TEST(ClipPlan, ReachesMoreThanFrameByFrameUnderTheSameLimits) {
     constexpr int kLevels = 17, kFrames = 40;
     constexpr double kSeconds = 1.0 / 20.0;
     const Rig rig = test::cushionRig();
-    const Field field = fieldOf(rig, kLevels);
+    const Field field = coarseField(rig, kLevels);
     const Coverage coverage(rig, field.frame, kLevels);
     ClipPlanner planner(coverage, kSeconds);
     double planned = 0.0, alone = 0.0;
@@ -151,7 +151,7 @@ TEST(ClipPlan, ReachesMoreThanFrameByFrameUnderTheSameLimits) {
 
 TEST(ClipPlan, RefusesOtherNumbersAndCanBeStopped) {
     const Rig rig = test::lifterRig();
-    const Field field = fieldOf(rig, 4);
+    const Field field = coarseField(rig, 4);
     const Coverage coverage(rig, field.frame, 4);
     ClipPlanner planner(coverage, 0.1);
     const Moving moving = shownBy(coverage, {State(3), State(3)});

@@ -11,7 +11,7 @@
 namespace lumorph {
 namespace {
 
-constexpr MotionLimits kServo{.maxVelocity = 1.3, .dampingRatio = 1.0, .settleSeconds = 0.15};
+constexpr MotionLimits kPlanned{.maxVelocity = 1.3, .dampingRatio = 1.0, .settleSeconds = 0.15};
 
 double gainAt(const std::vector<float>& gains, std::size_t count, std::size_t frame, double position) {
     const double place = position * static_cast<double>(count - 1);
@@ -35,7 +35,7 @@ double bestOfAll(MotionState now, const std::vector<float>& gains, std::size_t c
     if (frame * count == gains.size()) return 0.0;
     double best = -1.0;
     for (int c = 0; c < commands; ++c) {
-        const MotionState next = advance(now, static_cast<double>(c) / (commands - 1), seconds, kServo);
+        const MotionState next = advance(now, static_cast<double>(c) / (commands - 1), seconds, kPlanned);
         best = std::max(best, gainAt(gains, count, frame, next.position) +
                                   bestOfAll(next, gains, count, seconds, commands, frame + 1));
     }
@@ -45,7 +45,7 @@ double bestOfAll(MotionState now, const std::vector<float>& gains, std::size_t c
 TEST(MotionPlan, GainsAsMuchAsTheBestOfAllCommands) {
     constexpr double kSeconds = 0.2;
     constexpr std::size_t kFrames = 5, kCount = 6;
-    const MotionPlanner planner(kServo, kSeconds);
+    const MotionPlanner planner(kPlanned, kSeconds);
     for (unsigned seed = 100; seed < 106; ++seed) {
         const std::vector<float> gains = randomGains(kFrames, kCount, seed);
         const MotionState start{0.15 * (seed - 100), seed % 2 == 0 ? 0.0 : 0.8};
@@ -61,17 +61,17 @@ TEST(MotionPlan, GainsAsMuchAsTheBestOfAllCommands) {
 // R19
 TEST(MotionPlan, KeepsTheLimitsAndIsTheMotionOfItsCommands) {
     constexpr double kSeconds = 1.0 / 30.0;
-    const MotionPlanner planner(kServo, kSeconds);
+    const MotionPlanner planner(kPlanned, kSeconds);
     const std::vector<float> gains = randomGains(60, 33, 7);
     const MotionPlan plan = planner.plan({0.4, 0.5}, gains, 33);
     ASSERT_EQ(plan.commands.size(), 60U);
-    MotionModel model({kServo});
+    MotionModel model({kPlanned});
     model.resume(std::vector{0.4}, std::vector{0.5});
     double before = 0.4;
     for (std::size_t k = 0; k < 60; ++k) {
         const double reached = model.step(std::vector{plan.commands[k]}, kSeconds)[0];
         EXPECT_EQ(reached, plan.states[k].position) << k;
-        EXPECT_LE(std::abs(reached - before), kServo.maxVelocity * kSeconds + 1e-12) << k;
+        EXPECT_LE(std::abs(reached - before), kPlanned.maxVelocity * kSeconds + 1e-12) << k;
         before = reached;
     }
 }
@@ -79,7 +79,7 @@ TEST(MotionPlan, KeepsTheLimitsAndIsTheMotionOfItsCommands) {
 // R19: no oscillation.
 TEST(MotionPlan, GoesStraightToAPlaceThatStaysTheBest) {
     constexpr double kSeconds = 1.0 / 30.0;
-    const MotionPlanner planner(kServo, kSeconds);
+    const MotionPlanner planner(kPlanned, kSeconds);
     for (const double best : {0.31, 0.7, 1.0}) {
         std::vector<float> gains;
         for (int k = 0; k < 45; ++k)
@@ -95,7 +95,7 @@ TEST(MotionPlan, GoesStraightToAPlaceThatStaysTheBest) {
         double told = 0.0;
         MotionState follower;
         for (int k = 0; k < 45; ++k) {
-            follower = advance(follower, best, kSeconds, kServo);
+            follower = advance(follower, best, kSeconds, kPlanned);
             told += 1.0 - std::abs(follower.position - best);
         }
         EXPECT_GT(plan.gain, told);
@@ -103,19 +103,19 @@ TEST(MotionPlan, GoesStraightToAPlaceThatStaysTheBest) {
 }
 
 TEST(MotionPlan, StaysWhereNothingIsGained) {
-    const MotionPlanner planner(kServo, 0.04);
+    const MotionPlanner planner(kPlanned, 0.04);
     const std::vector<float> gains(10 * 5, 0.25F);
     for (const MotionState& state : planner.plan({0.37, 0.0}, gains, 5).states) EXPECT_NEAR(state.position, 0.37, 1e-9);
 }
 
 TEST(MotionPlan, RefusesWhatIsNoPlan) {
-    const MotionPlanner planner(kServo, 0.04);
+    const MotionPlanner planner(kPlanned, 0.04);
     const std::vector<float> gains(10, 0.0F);
     EXPECT_THROW((void)planner.plan({}, gains, 3), InvalidInput);
     EXPECT_THROW((void)planner.plan({}, gains, 1), InvalidInput);
     EXPECT_THROW((void)planner.follow({}, std::vector{0.5}, gains, 5), InvalidInput);
     EXPECT_THROW(MotionPlanner({.maxVelocity = -1.0}, 0.04), InvalidInput);
-    EXPECT_THROW(MotionPlanner(kServo, -1.0), InvalidInput);
+    EXPECT_THROW(MotionPlanner(kPlanned, -1.0), InvalidInput);
     EXPECT_TRUE(planner.plan({}, std::vector<float>{}, 5).commands.empty());
 }
 

@@ -10,7 +10,7 @@
 namespace lumorph {
 namespace {
 
-constexpr MotionLimits kServo{.maxVelocity = 1.3, .dampingRatio = 1.0, .settleSeconds = 0.15};
+constexpr MotionLimits kLed{.maxVelocity = 1.3, .dampingRatio = 1.0, .settleSeconds = 0.15};
 
 struct Followed {
     double error = 0.0;     ///< mean distance from what is wanted
@@ -18,10 +18,10 @@ struct Followed {
 };
 
 /// Follows `wanted(seconds)`, in whole levels, for three seconds.
-template <typename Wanted> Followed follow(Wanted&& wanted, double framesPerSecond, bool led) {
+template <typename Wanted> Followed followLed(Wanted&& wanted, double framesPerSecond, bool led) {
     const double dt = 1.0 / framesPerSecond;
-    StrokeLead lead(std::vector{kServo});
-    MotionModel motion({kServo});
+    StrokeLead lead(std::vector{kLed});
+    MotionModel motion({kLed});
     Followed followed;
     double highest = 0.0, lowest = 1.0;
     const int frames = static_cast<int>(3.0 * framesPerSecond);
@@ -42,10 +42,10 @@ TEST(StrokeLead, FollowsASteadyChangeCloser) {
     for (const double rate : {30.0, 60.0, 47.0}) {
         const auto wave = [](double t) { return 0.5 - 0.4 * std::cos(2.2 * t); };
         const auto ramp = [](double t) { return std::min(0.1 + 0.4 * t, 0.7); };
-        EXPECT_LT(follow(wave, rate, true).error, 0.5 * follow(wave, rate, false).error) << rate;
-        EXPECT_LT(follow(ramp, rate, true).error, 0.5 * follow(ramp, rate, false).error) << rate;
-        EXPECT_LT(follow(wave, rate, true).overshoot, 2.0 / 32.0) << rate;
-        EXPECT_LT(follow(ramp, rate, true).overshoot, 2.0 / 32.0) << rate;
+        EXPECT_LT(followLed(wave, rate, true).error, 0.5 * followLed(wave, rate, false).error) << rate;
+        EXPECT_LT(followLed(ramp, rate, true).error, 0.5 * followLed(ramp, rate, false).error) << rate;
+        EXPECT_LT(followLed(wave, rate, true).overshoot, 2.0 / 32.0) << rate;
+        EXPECT_LT(followLed(ramp, rate, true).overshoot, 2.0 / 32.0) << rate;
     }
 }
 
@@ -53,13 +53,13 @@ TEST(StrokeLead, DoesNotPassAJump) {
     for (const double rate : {30.0, 60.0, 47.0})
         for (const double height : {0.1, 0.4, 0.8}) {
             const auto jump = [&](double t) { return t < 0.5 ? 0.1 : 0.1 + height; };
-            EXPECT_LT(follow(jump, rate, true).overshoot, 0.5 / 32.0) << rate << ' ' << height;
-            EXPECT_LT(follow(jump, rate, true).error, follow(jump, rate, false).error + 1e-9);
+            EXPECT_LT(followLed(jump, rate, true).overshoot, 0.5 / 32.0) << rate << ' ' << height;
+            EXPECT_LT(followLed(jump, rate, true).error, followLed(jump, rate, false).error + 1e-9);
         }
 }
 
 TEST(StrokeLead, CommandsWhatStaysAsItIs) {
-    StrokeLead lead(std::vector{kServo, kServo});
+    StrokeLead lead(std::vector{kLed, kLed});
     const std::vector<double> wanted{0.3, 1.0};
     for (int k = 0; k < 20; ++k) {
         const auto commands = lead.step(wanted, 1.0 / 30.0);
