@@ -266,8 +266,9 @@ TEST_F(PlacementTest, AClipThatLooksAheadReachesMoreThanOneThatFollows) {
         for (std::size_t k = 0; k < frames.size(); ++k) {
             const auto strokes = motion.step(frames[k].commands, k == 0 ? 0.0 : 1.0 / 20.0);
             EXPECT_EQ(std::vector<double>(strokes.begin(), strokes.end()), frames[k].strokes) << k;
-            if (lookAhead == 0.0 && k > 0)
+            if (lookAhead == 0.0 && k > 0) {
                 EXPECT_EQ(frames[k].commands, strokesOf(rig_, frames[k].wanted, coverage_.levels())) << k;
+            }
             sum += frames[k].iouReached / 21.0;
         }
         return sum;
