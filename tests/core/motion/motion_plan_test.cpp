@@ -85,20 +85,21 @@ TEST(MotionPlan, GoesStraightToAPlaceThatStaysTheBest) {
         for (int k = 0; k < 45; ++k)
             for (int j = 0; j < 33; ++j) gains.push_back(static_cast<float>(1.0 - std::abs(j / 32.0 - best)));
         const MotionPlan plan = planner.plan({}, gains, 33);
-        double before = 0.0;
+        double before = 0.0, gained = 0.0;
         for (const MotionState& state : plan.states) {
+            gained += 1.0 - std::abs(state.position - best);
             EXPECT_GE(state.position, before - 1e-3) << best;
             before = state.position;
         }
         EXPECT_NEAR(before, best, 0.5 / 32.0);
-        // What the same actuator does that is only told where to go comes later.
+        // No later than by commanding the place itself; to the end of the range there is no faster way.
         double told = 0.0;
         MotionState follower;
         for (int k = 0; k < 45; ++k) {
             follower = advance(follower, best, kSeconds, kPlanned);
             told += 1.0 - std::abs(follower.position - best);
         }
-        EXPECT_GT(plan.gain, told);
+        EXPECT_GE(gained, told + (best < 1.0 ? 0.1 : -1e-3)) << best;
     }
 }
 
