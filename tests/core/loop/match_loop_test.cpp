@@ -171,9 +171,27 @@ TEST_F(MatchLoopTest, ClassesAndVolumesAgreeWithEveryVoxel) {
     }
 }
 
+/// A block on the device that grows and shrinks every two seconds.
+std::shared_ptr<const MatchTarget> breathingBlock() {
+    Model model = modelOf(test::boxMesh({0.01F, 0.0F, 0.01F}, {0.09F, 0.03F, 0.07F}), "block");
+    Model::Animation animation;
+    animation.name = "breathe";
+    animation.channels.push_back(
+        {0, Model::Path::scale, Model::Interpolation::linear, {0.0F, 1.0F, 2.0F}, {1, 0.2F, 1, 1, 1, 1, 1, 0.2F, 1}});
+    model.animations.push_back(animation);
+    MatchTarget target;
+    target.name = "breathing";
+    target.model = std::make_shared<const Model>(std::move(model));
+    target.solid = makeTarget(flatten(*target.model, animation, 0.0));
+    target.animation = 0;
+    target.duration = 2.0;
+    target.box = boxOverAnimation(*target.model, animation, 20, 10.0);
+    return std::make_shared<const MatchTarget>(std::move(target));
+}
+
 // R19: actuators are told where the target will be when they come, and move no faster for it.
 TEST_F(MatchLoopTest, ComesNearerToATargetThatMovesThanByFollowingIt) {
-    MatchWish wish = wishFor(field_, movingTarget());
+    MatchWish wish = wishFor(field_, breathingBlock());
     wish.budget = std::chrono::seconds(10);
     MotionModel following(motionLimits(field_->rig));
     CoverageScratch scratch;
