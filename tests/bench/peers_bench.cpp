@@ -10,6 +10,7 @@
 #include <string>
 #include <utility>
 
+#include <Eigen/Dense>
 #include <nlopt.h>
 #include <pagmo/algorithm.hpp>
 #include <pagmo/algorithms/cmaes.hpp>
@@ -313,25 +314,19 @@ private:
         }
     }
 
-    /// Of (J J^T + damping diag) step = -J r, by elimination; keeps strokes within [0, 1].
+    /// Of (J J^T + damping diag) step = -J r; keeps strokes within [0, 1].
     static void solve(const std::vector<double>& jacobian, const std::vector<float>& residuals, double damping,
                       std::vector<double>& strokes) {
-        const std::size_t n = strokes.size(), count = residuals.size();
-        std::vector<std::vector<double>> m(n, std::vector<double>(n + 1, 0.0));
-        for (std::size_t i = 0; i < n; ++i) {
-            for (std::size_t j = 0; j < n; ++j)
-                for (std::size_t v = 0; v < count; ++v) m[i][j] += jacobian[i * count + v] * jacobian[j * count + v];
-            for (std::size_t v = 0; v < count; ++v)
-                m[i][n] -= jacobian[i * count + v] * static_cast<double>(residuals[v]);
+        const auto n = static_cast<Eigen::Index>(strokes.size()), count = static_cast<Eigen::Index>(residuals.size());
+        const Eigen::Map<const Eigen::MatrixXd> columns(jacobian.data(), count, n);
+        const Eigen::VectorXd errors = Eigen::Map<const Eigen::VectorXf>(residuals.data(), count).cast<double>();
+        Eigen::MatrixXd normal = columns.transpose() * columns;
+        normal.diagonal() = (1.0 + damping) * normal.diagonal().array() + 1e-9;
+        const Eigen::VectorXd step = normal.ldlt().solve(-columns.transpose() * errors);
+        for (Eigen::Index i = 0; i < n; ++i) {
+            double& stroke = strokes[static_cast<std::size_t>(i)];
+            stroke = std::clamp(stroke + step[i], 0.0, 1.0);
         }
-        for (std::size_t i = 0; i < n; ++i) m[i][i] += damping * m[i][i] + 1e-9;
-        for (std::size_t i = 0; i < n; ++i) // positive definite: no pivoting needed
-            for (std::size_t j = 0; j < n; ++j) {
-                if (j == i) continue;
-                const double factor = m[j][i] / m[i][i];
-                for (std::size_t k = i; k <= n; ++k) m[j][k] -= factor * m[i][k];
-            }
-        for (std::size_t i = 0; i < n; ++i) strokes[i] = std::clamp(strokes[i] + m[i][n] / m[i][i], 0.0, 1.0);
     }
 
     const Device& device_;
