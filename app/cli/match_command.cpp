@@ -36,6 +36,7 @@ struct MatchArguments {
     std::string relief = "auto";
     std::string animation;
     double framesPerSecond = 30.0;
+    double lookAhead = ClipOptions{}.lookAhead;
     std::string csv;
     std::string picture;
     bool json = false;
@@ -279,6 +280,7 @@ void matchAnimation(const Matcher& matcher, const MatchArguments& arguments, con
     ClipOptions options;
     options.framesPerSecond = arguments.framesPerSecond;
     options.refined = arguments.method == "refined";
+    options.lookAhead = arguments.lookAhead;
     options.budget = Microseconds(static_cast<std::int64_t>(1000.0 * arguments.budgetMilliseconds));
     const auto frames =
         matchClip(matcher.field, matcher.coverage, matcher.voting, model, animation, options, session.progress());
@@ -292,12 +294,17 @@ void matchAnimation(const Matcher& matcher, const MatchArguments& arguments, con
         reached += frame.iouReached / static_cast<double>(frames.size());
         list.push_back({{"seconds", frame.seconds},
                         {"state", stateJson(frame.wanted)},
+                        {"commands", frame.commands},
                         {"strokes", frame.strokes},
                         {"iouWanted", frame.iouWanted},
                         {"iouReached", frame.iouReached}});
     }
     if (arguments.json)
-        printJson({{"animation", animation.name}, {"frames", list}, {"iouWanted", wanted}, {"iouReached", reached}});
+        printJson({{"animation", animation.name},
+                   {"lookAhead", arguments.lookAhead},
+                   {"frames", list},
+                   {"iouWanted", wanted},
+                   {"iouReached", reached}});
     else if (arguments.csv != "-")
         std::printf("  %zu frames of '%s': mean IoU %.3f wanted, %.3f reached under the velocity limits\n",
                     frames.size(), animation.name.c_str(), wanted, reached);
@@ -387,6 +394,10 @@ void addMatchCommand(CLI::App& app, Session& session) {
         ->excludes("--certify");
     command->add_option("--fps", a->framesPerSecond, "Frames a second of that")
         ->check(numberBetween(1.0, 240.0))
+        ->capture_default_str();
+    command->add_option("--look-ahead", a->lookAhead, "Seconds that commands look ahead in it; 0: frame by frame")
+        ->needs("--animation")
+        ->check(numberBetween(0.0, kMostLookAhead))
         ->capture_default_str();
     command->add_option("--csv", a->csv, "Write the matched animation as a table, or -")->needs("--animation");
     command->add_option("--picture", a->picture, "Write a picture of rest, target and fit (.png)")

@@ -17,6 +17,8 @@
 #include "core/loop/stage_timer.h"
 #include "core/loop/target_stage.h"
 #include "core/loop/viewer_stage.h"
+#include "core/motion/rig_motion.h"
+#include "core/motion/stroke_lead.h"
 
 namespace lumorph {
 
@@ -103,7 +105,10 @@ struct MatchLoop::Data {
     MatchWish driven(const MatchWish& wish, double sinceLast, MatchFrame& frame);
     void hold(const MatchWish& wish, double sinceLast, MatchFrame& frame);
     void joinBends(const MatchWish& wish, MatchFrame& frame);
-    void move(const MatchWish& wish, double sinceLast, MatchFrame& frame);
+    /// `servos` as driven() returns it.
+    void move(const MatchWish& servos, double sinceLast, MatchFrame& frame);
+    /// What the actuators are told: of a target that moves by itself ahead of what it wants, because they are late.
+    [[nodiscard]] std::vector<double> aims(const MatchWish& servos, double sinceLast, const MatchFrame& frame);
     void judgeItem(const MatchWish& wish, MatchFrame& frame);
     [[nodiscard]] std::shared_ptr<const MatchFrame> shown(const MatchWish& wish);
     [[nodiscard]] bool restsAfter(const MatchWish& wish, const MatchFrame& frame) const;
@@ -117,6 +122,9 @@ struct MatchLoop::Data {
     ItemFitStage itemFit;
     MatchStage matching;
     MotionStage motion;
+    std::optional<StrokeLead> lead; ///< of `ledRig` and `ledTarget`
+    std::shared_ptr<const Rig> ledRig;
+    std::shared_ptr<const MatchTarget> ledTarget;
     Dance dance;
     std::uint64_t number = 0;
     bool settled = false;
@@ -151,7 +159,7 @@ void MatchLoop::Data::fillShown(const MatchWish& wish, double sinceLast, MatchFr
     else if (frame.matched)
         matching.match(servos, voxels, wish.target, newTarget, clock, frame);
     joinBends(wish, frame);
-    move(wish, sinceLast, frame);
+    move(servos, sinceLast, frame);
     if (frame.matched) matching.judge(wish, voxels, frame);
     judgeItem(wish, frame);
     settled = restsAfter(servos, frame);
@@ -217,11 +225,25 @@ void MatchLoop::Data::hold(const MatchWish& wish, double sinceLast, MatchFrame& 
     if (wish.field) frame.wanted = nearestLevels(frame.wantedStrokes, wish.field->field.levels);
 }
 
-void MatchLoop::Data::move(const MatchWish& wish, double sinceLast, MatchFrame& frame) {
+std::vector<double> MatchLoop::Data::aims(const MatchWish& servos, double sinceLast, const MatchFrame& frame) {
+    if (servos.driver != Driver::target || !TargetStage::moves(servos) || servos.stopped) {
+        lead.reset();
+        return frame.wantedStrokes;
+    }
+    if (!lead || ledRig != servos.rig || ledTarget != servos.target) lead.emplace(motionLimits(*servos.rig));
+    ledRig = servos.rig;
+    ledTarget = servos.target;
+    const auto commands = lead->step(frame.wantedStrokes, sinceLast);
+    std::vector<double> within(commands.begin(), commands.end());
+    motion.limit(within);
+    return within;
+}
+
+void MatchLoop::Data::move(const MatchWish& servos, double sinceLast, MatchFrame& frame) {
     {
         const StageTimer timer(clock, frame.ms.motion);
         motion.limit(frame.wantedStrokes);
-        motion.move(frame.wantedStrokes, sinceLast, wish.stopped);
+        motion.move(aims(servos, sinceLast, frame), sinceLast, servos.stopped);
         frame.estimatedStrokes.assign(motion.strokes().begin(), motion.strokes().end());
         frame.commandedStrokes.assign(motion.commands().begin(), motion.commands().end());
     }

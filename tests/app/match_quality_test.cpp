@@ -101,5 +101,20 @@ TEST(MatchQuality, AnimationKeepsToTheVelocityLimits) {
     EXPECT_TRUE(hurried);
 }
 
+// R19
+TEST(MatchQuality, AnimationIsReachedBetterByLookingAhead) {
+    const auto reached = [](const char* animation, const char* seconds) {
+        return matchJson({"match", resource("models/tablet.mdf"), resource(animation), "--animation", "first", "--fps",
+                          "10", "--json", "--look-ahead", seconds});
+    };
+    for (const char* animation : {"targets/swell.glb", "targets/bloom.glb"}) {
+        const nlohmann::json alone = reached(animation, "0");
+        const nlohmann::json ahead = reached(animation, "1");
+        EXPECT_EQ(ahead["lookAhead"], 1.0);
+        EXPECT_EQ(ahead["iouWanted"], alone["iouWanted"]) << "votes are the same";
+        EXPECT_GE(ahead["iouReached"].get<double>(), alone["iouReached"].get<double>() + 0.03) << animation;
+    }
+}
+
 } // namespace
 } // namespace lumorph::test

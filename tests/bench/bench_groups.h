@@ -23,6 +23,7 @@ void benchLive(const Filter& filter, Report& report);
 void benchRefine(const Filter& filter, Report& report);
 void benchPlacement(const Filter& filter, Report& report);
 void benchCertify(const Filter& filter, Report& report);
+void benchPeers(const Filter& filter, Report& report);
 void benchScaling(const Filter& filter, Report& report);
 void benchFrame(const Filter& filter, Report& report);
 void benchDevices(const Filter& filter, Report& report);

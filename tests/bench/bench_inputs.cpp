@@ -159,4 +159,11 @@ std::vector<TargetVolume> meshTargets(const Field& field, const BitColumns& doma
     return targets;
 }
 
+std::vector<TargetVolume> allTargets(const Device& device) {
+    std::vector<TargetVolume> targets = meshTargets(device.field, device.coverage.domain());
+    for (TargetVolume& target : wavesAndReliefs(device.field, device.coverage.domain())) targets.push_back(target);
+    for (TargetVolume& target : hiddenStates(device.coverage, 20, 7)) targets.push_back(target);
+    return targets;
+}
+
 } // namespace lumorph::bench

@@ -51,5 +51,9 @@ inline constexpr const char* kSharedMeshes[] = {"spot.obj", "rocker-arm.obj"};
 [[nodiscard]] std::vector<TargetVolume> wavesAndReliefs(const Field& field, const BitColumns& domain);
 /// The shared meshes that are there, fitted.
 [[nodiscard]] std::vector<TargetVolume> meshTargets(const Field& field, const BitColumns& domain);
+/// All of these, with 20 hidden states.
+[[nodiscard]] std::vector<TargetVolume> allTargets(const Device& device);
+/// By how much the best IoU must exceed that of the device at rest, or a target says nothing about a search.
+inline constexpr double kWorthwhile = 0.15;
 
 } // namespace lumorph::bench

@@ -16,8 +16,6 @@ namespace {
 
 constexpr Microseconds kBudget{10'000};
 constexpr int kRandomStarts = 50;
-/// A target that the device can hardly do better at than by resting says nothing about a search.
-constexpr double kWorthwhile = 0.15;
 
 /// What refinement reaches within the budget, against the best state known.
 struct Outcome {
@@ -33,13 +31,6 @@ struct Outcome {
     [[nodiscard]] bool counts() const { return best - rest >= kWorthwhile; }
     [[nodiscard]] double share() const { return refined / best; }
 };
-
-std::vector<TargetVolume> allTargets(const Device& device) {
-    std::vector<TargetVolume> targets = meshTargets(device.field, device.coverage.domain());
-    for (TargetVolume& target : wavesAndReliefs(device.field, device.coverage.domain())) targets.push_back(target);
-    for (TargetVolume& target : hiddenStates(device.coverage, 20, 7)) targets.push_back(target);
-    return targets;
-}
 
 Outcome refineOne(const Device& device, Refiner& refiner, const TargetVolume& target) {
     const SteadyClock clock;

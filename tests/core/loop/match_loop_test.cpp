@@ -1,4 +1,5 @@
 #include <cmath>
+#include <cstdio>
 #include <limits>
 #include <random>
 #include <set>
@@ -168,6 +169,54 @@ TEST_F(MatchLoopTest, ClassesAndVolumesAgreeWithEveryVoxel) {
                          static_cast<double>(unreachable) / static_cast<double>(target.count()));
         EXPECT_GT(counts[kVoxelMatched], 0U);
     }
+}
+
+/// A block on the device that grows and shrinks every two seconds.
+std::shared_ptr<const MatchTarget> breathingBlock() {
+    Model model = modelOf(test::boxMesh({0.01F, 0.0F, 0.01F}, {0.09F, 0.03F, 0.07F}), "block");
+    Model::Animation animation;
+    animation.name = "breathe";
+    animation.channels.push_back(
+        {0, Model::Path::scale, Model::Interpolation::linear, {0.0F, 1.0F, 2.0F}, {1, 0.2F, 1, 1, 1, 1, 1, 0.2F, 1}});
+    model.animations.push_back(animation);
+    MatchTarget target;
+    target.name = "breathing";
+    target.model = std::make_shared<const Model>(std::move(model));
+    target.solid = makeTarget(flatten(*target.model, animation, 0.0));
+    target.animation = 0;
+    target.duration = 2.0;
+    target.box = boxOverAnimation(*target.model, animation, 20, 10.0);
+    return std::make_shared<const MatchTarget>(std::move(target));
+}
+
+// R19: actuators are told where the target will be when they come, and move no faster for it.
+TEST_F(MatchLoopTest, ComesNearerToATargetThatMovesThanByFollowingIt) {
+    MatchWish wish = wishFor(field_, breathingBlock());
+    wish.budget = std::chrono::seconds(10);
+    MotionModel following(motionLimits(field_->rig));
+    CoverageScratch scratch;
+    BitColumns covered;
+    double led = 0.0, followed = 0.0;
+    std::vector<double> last(3, 0.0);
+    for (int k = 0; k < 240; ++k) {
+        const double passed = k == 0 ? 0.0 : kFrame;
+        const auto frame = loop_.step(wish, passed);
+        led += frame->iouEstimated / 240;
+        field_->coverage.coveredAt(following.step(frame->wantedStrokes, passed), covered, scratch);
+        followed += intersectionOverUnion(covered, voxelsOf(*frame)) / 240;
+        for (std::size_t i = 0; i < 3; ++i)
+            EXPECT_LE(std::abs(frame->estimatedStrokes[i] - last[i]),
+                      field_->rig.actuators()[i].maxVelocity * kFrame + 1e-9);
+        last = frame->estimatedStrokes;
+    }
+    std::printf("led %.4f, followed %.4f\n", led, followed);
+    EXPECT_GT(led, followed + 0.01);
+    // Once it stands still, the actuators are told what it wants.
+    wish.playing = false;
+    auto frame = loop_.step(wish, kFrame);
+    for (int k = 0; k < 400 && !loop_.settled(); ++k) frame = loop_.step(wish, kFrame);
+    EXPECT_TRUE(loop_.settled());
+    EXPECT_EQ(frame->estimatedStrokes, frame->wantedStrokes);
 }
 
 TEST_F(MatchLoopTest, WhatStandsStillIsNotWorkedOutAgain) {

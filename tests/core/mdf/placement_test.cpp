@@ -13,6 +13,7 @@
 #include "core/mdf/clip.h"
 #include "core/mdf/placement_scorer.h"
 #include "core/mdf/refine.h"
+#include "core/motion/rig_motion.h"
 #include "tests/support/small_rigs.h"
 
 namespace lumorph {
@@ -319,6 +320,37 @@ TEST_F(PlacementTest, AClipFollowsItsAnimationUnderTheVelocityLimits) {
                                  {.framesPerSecond = 0.0, .placement = {}}),
                  InvalidInput);
     EXPECT_THROW((void)matchClip(field_, coverage_, voting_, model, Model::Animation{}), InvalidInput);
+}
+
+// R19: looking ahead, it moves before the target does; without, after it.
+TEST_F(PlacementTest, AClipThatLooksAheadReachesMoreThanOneThatFollows) {
+    const Model model = growingBox();
+    const Model::Animation& animation = model.animations.front();
+    ClipOptions options;
+    options.framesPerSecond = 20.0;
+    const auto reachedWith = [&](double lookAhead) {
+        options.lookAhead = lookAhead;
+        const auto frames = matchClip(field_, coverage_, voting_, model, animation, options);
+        EXPECT_EQ(frames.size(), 21U) << lookAhead;
+        MotionModel motion(motionLimits(rig_)); // the strokes are what the commands lead to
+        double sum = 0.0;
+        for (std::size_t k = 0; k < frames.size(); ++k) {
+            const auto strokes = motion.step(frames[k].commands, k == 0 ? 0.0 : 1.0 / 20.0);
+            EXPECT_EQ(std::vector<double>(strokes.begin(), strokes.end()), frames[k].strokes) << k;
+            if (lookAhead == 0.0 && k > 0) {
+                EXPECT_EQ(frames[k].commands, strokesOf(rig_, frames[k].wanted, coverage_.levels())) << k;
+            }
+            sum += frames[k].iouReached / 21.0;
+        }
+        return sum;
+    };
+    const double alone = reachedWith(0.0);
+    for (const double lookAhead : {0.1, 0.5, 10.0}) EXPECT_GT(reachedWith(lookAhead), alone) << lookAhead;
+    EXPECT_GE(reachedWith(1.0), alone + 0.03);
+    for (const double wrong : {-0.1, 10.1, std::nan("")}) {
+        options.lookAhead = wrong;
+        EXPECT_THROW((void)matchClip(field_, coverage_, voting_, model, animation, options), InvalidInput) << wrong;
+    }
 }
 
 // R19: the last frame shows the end, not a time before it nor the beginning again.
