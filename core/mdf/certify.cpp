@@ -22,6 +22,7 @@ constexpr std::size_t kEvaluated = 8;            ///< a box of so few states is 
 constexpr std::size_t kBoxesAtATime = 4;
 constexpr std::size_t kMostBoxes = 2'000'000; ///< that are kept
 constexpr Microseconds kRefining{20'000};
+constexpr int kSlices = 5; ///< of that before boxes are bounded
 
 /// A box of joint states of the actuators that are bounded together.
 struct StateBox {
@@ -209,7 +210,7 @@ private:
             all.high.push_back(Level{coverage_.levels() - 1});
         }
         boxes_.assign(1, all);
-        refining_ = false;
+        slices_ = 0;
         stage_ = Stage::refine;
     }
 
@@ -291,13 +292,12 @@ private:
         if (boxes_.empty() || boxes_.size() > kMostBoxes) stage_ = Stage::done;
     }
 
-    /// A good state first closes more boxes; in slices, until no single actuator helps.
+    /// A good state first closes more boxes.
     void refineAtFirst() {
-        const Refinement refined =
-            refining_ ? refiner_.resume(kRefining, *clock_) : refiner_.refine(target_, known_.best, kRefining, *clock_);
-        refining_ = true;
+        const Refinement refined = slices_ > 0 ? refiner_.resume(kRefining, *clock_)
+                                               : refiner_.refine(target_, known_.best, kRefining, *clock_);
         keep(refined);
-        if (refined.converged) stage_ = Stage::boxes;
+        if (refined.converged || ++slices_ == kSlices) stage_ = Stage::boxes;
     }
     void refine() { keep(refiner_.refine(target_, known_.best, kRefining, *clock_)); }
     void keep(const Refinement& refined) {
@@ -411,7 +411,7 @@ private:
     BitColumns target_;
     std::size_t wanted_ = 0;
     Stage stage_ = Stage::done;
-    bool refining_ = false;
+    int slices_ = 0; ///< of refining at first
     std::optional<PieceTables> tables_;
     std::vector<StateBox> boxes_; ///< a heap, the largest bound first
     double residual_ = 0.0;       ///< bound of boxes that were closed unsolved
