@@ -22,6 +22,7 @@ constexpr std::size_t kEvaluated = 8;            ///< a box of so few states is 
 constexpr std::size_t kBoxesAtATime = 4;
 constexpr std::size_t kMostBoxes = 2'000'000; ///< that are kept
 constexpr Microseconds kRefining{20'000};
+constexpr int kSlices = 5; ///< of that before boxes are bounded
 
 /// A box of joint states of the actuators that are bounded together.
 struct StateBox {
@@ -91,7 +92,7 @@ public:
     }
 
 private:
-    enum class Stage { columns, tables, count, solve, boxes, done };
+    enum class Stage { columns, tables, count, solve, refine, boxes, done };
 
     [[nodiscard]] bool isOver() const { return stop_.stop_requested() || clock_->now() >= deadline_; }
 
@@ -109,6 +110,9 @@ private:
             break;
         case Stage::solve:
             solveTables();
+            break;
+        case Stage::refine:
+            refineAtFirst();
             break;
         case Stage::boxes:
             halveBoxes();
@@ -206,7 +210,8 @@ private:
             all.high.push_back(Level{coverage_.levels() - 1});
         }
         boxes_.assign(1, all);
-        stage_ = Stage::boxes;
+        slices_ = 0;
+        stage_ = Stage::refine;
     }
 
     /// Where the tables and `more` voxels that count for sure are worth no more than lambda x wanted.
@@ -287,8 +292,15 @@ private:
         if (boxes_.empty() || boxes_.size() > kMostBoxes) stage_ = Stage::done;
     }
 
-    void refine() {
-        const Refinement refined = refiner_.refine(target_, known_.best, kRefining, *clock_);
+    /// A good state first closes more boxes.
+    void refineAtFirst() {
+        const Refinement refined = slices_ > 0 ? refiner_.resume(kRefining, *clock_)
+                                               : refiner_.refine(target_, known_.best, kRefining, *clock_);
+        keep(refined);
+        if (refined.converged || ++slices_ == kSlices) stage_ = Stage::boxes;
+    }
+    void refine() { keep(refiner_.refine(target_, known_.best, kRefining, *clock_)); }
+    void keep(const Refinement& refined) {
         if (!isBetter(refined.after, known_.quality)) return;
         known_.best = refined.state;
         known_.quality = refined.after;
@@ -399,6 +411,7 @@ private:
     BitColumns target_;
     std::size_t wanted_ = 0;
     Stage stage_ = Stage::done;
+    int slices_ = 0; ///< of refining at first
     std::optional<PieceTables> tables_;
     std::vector<StateBox> boxes_; ///< a heap, the largest bound first
     double residual_ = 0.0;       ///< bound of boxes that were closed unsolved
