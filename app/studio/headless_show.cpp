@@ -114,9 +114,14 @@ void saveVideo(FieldPictures& pictures, const std::vector<Frame>& frames, const 
 
 void saveTable(const std::vector<Frame>& frames, const fs::path& file) {
     std::vector<ClipFrame> rows;
-    for (std::size_t k = 0; k < frames.size(); ++k)
-        rows.push_back({static_cast<double>(k) * kStepsAShowPicture * ShowPlayer::kStep, frames[k]->wanted,
-                        frames[k]->estimatedStrokes, frames[k]->iouWanted, frames[k]->iouEstimated});
+    for (std::size_t k = 0; k < frames.size(); ++k) {
+        ClipFrame& row = rows.emplace_back();
+        row.seconds = static_cast<double>(k) * kStepsAShowPicture * ShowPlayer::kStep;
+        row.wanted = frames[k]->wanted;
+        row.strokes = frames[k]->estimatedStrokes;
+        row.iouWanted = frames[k]->iouWanted;
+        row.iouReached = frames[k]->iouEstimated;
+    }
     const std::string table = clipCsv(frames.front()->field->field, rows);
     writeFileAtomically(file, std::as_bytes(std::span(table)));
 }
