@@ -24,7 +24,7 @@ namespace lumorph::cli {
 
 namespace {
 
-constexpr double kFitsNowhere = 0.15; ///< IoU below which nobody knows the target again
+constexpr double kFitsNowhere = 0.15; ///< below this IoU the target is hardly recognisable
 
 struct MatchArguments {
     std::string field;

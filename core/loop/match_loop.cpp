@@ -107,7 +107,7 @@ struct MatchLoop::Data {
     void joinBends(const MatchWish& wish, MatchFrame& frame);
     /// `servos` as driven() returns it.
     void move(const MatchWish& servos, double sinceLast, MatchFrame& frame);
-    /// What the actuators are told: of a target that moves by itself ahead of what it wants, because they are late.
+    /// The strokes that the actuators are commanded: ahead of a moving target by their lag.
     [[nodiscard]] std::vector<double> aims(const MatchWish& servos, double sinceLast, const MatchFrame& frame);
     void judgeItem(const MatchWish& wish, MatchFrame& frame);
     [[nodiscard]] std::shared_ptr<const MatchFrame> shown(const MatchWish& wish);

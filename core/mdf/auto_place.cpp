@@ -381,7 +381,7 @@ private:
     Progress progress_;
     TargetGrid grid_;
     PlacementScorer scorer_;
-    double thickness_; ///< at scale 1; of a target that is not closed nobody knows it
+    double thickness_; ///< at scale 1; infinite for an open target, where it is unknown
     SteadyClock clock_;
     tbb::enumerable_thread_specific<Worker> workers_{[this] { return Worker(coverage_); }};
     std::atomic<int> seen_{0};

@@ -16,7 +16,7 @@ namespace lumorph::studio {
 namespace {
 
 constexpr int kGlideMilliseconds = 700;
-constexpr double kFitsNowhere = 0.15; ///< IoU below which nobody knows the target again
+constexpr double kFitsNowhere = 0.15; ///< below this IoU the target is hardly recognisable
 
 /// Part of the way from one placement to another, the short way round.
 Placement between(const Placement& from, const Placement& to, double share) {

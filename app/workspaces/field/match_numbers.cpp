@@ -78,7 +78,7 @@ MatchNumbers::MatchNumbers(QWidget* parent)
     grid->addWidget(iou_, 0, 0, 3, 1);
     grid->addWidget(muted("IoU", this), 0, 1, Qt::AlignLeft | Qt::AlignBottom);
     word_->setObjectName("match.word");
-    word_->setToolTip(tr("From 0.7 on a target is good to recognise by touch alone, below 0.4 hardly"));
+    word_->setToolTip(tr("Good from 0.7 on, fair from 0.4 on, poor below"));
     grid->addWidget(word_, 1, 1, Qt::AlignLeft | Qt::AlignTop);
     grid->setColumnStretch(1, 1);
     const auto step = [&](int row, const QString& text, const QString& hint, QLabel* number) {

@@ -189,7 +189,7 @@ std::shared_ptr<const MatchTarget> breathingBlock() {
     return std::make_shared<const MatchTarget>(std::move(target));
 }
 
-// R19: actuators are told where the target will be when they come, and move no faster for it.
+// R19: the commands lead to where the target will be on arrival, within the velocity limits.
 TEST_F(MatchLoopTest, ComesNearerToATargetThatMovesThanByFollowingIt) {
     MatchWish wish = wishFor(field_, breathingBlock());
     wish.budget = std::chrono::seconds(10);
@@ -211,7 +211,7 @@ TEST_F(MatchLoopTest, ComesNearerToATargetThatMovesThanByFollowingIt) {
     }
     std::printf("led %.4f, followed %.4f\n", led, followed);
     EXPECT_GT(led, followed + 0.01);
-    // Once it stands still, the actuators are told what it wants.
+    // Once the target stands still, the commands are the strokes wanted.
     wish.playing = false;
     auto frame = loop_.step(wish, kFrame);
     for (int k = 0; k < 400 && !loop_.settled(); ++k) frame = loop_.step(wish, kFrame);

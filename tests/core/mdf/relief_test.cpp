@@ -150,7 +150,7 @@ TEST_F(ReliefTest, AutoPlaceTakesAReliefWhereNothingElseFits) {
     options.relief = ReliefChoice::automatic;
     const AutoPlacement chosen = autoPlace(field_, coverage_, voting_, target, options);
     EXPECT_EQ(chosen.placement.relief, plain.iou < 0.3 && relief.iou >= plain.iou + 0.1);
-    // The figure told is that of the state told, against the relief.
+    // The reported IoU is that of the reported state against the relief.
     BitColumns wanted;
     const TriangleMesh mesh = placed(target.mesh, relief.placement);
     voxelizeRelief(room_, mesh.positions, mesh.triangles, wanted);
