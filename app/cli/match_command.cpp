@@ -24,8 +24,6 @@ namespace lumorph::cli {
 
 namespace {
 
-constexpr double kFitsNowhere = 0.15; ///< below this IoU the target is hardly recognisable
-
 struct MatchArguments {
     std::string field;
     TargetArguments target;

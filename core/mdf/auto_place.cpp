@@ -450,6 +450,8 @@ AutoPlacement autoPlace(const Field& field, const Coverage& coverage, const Voti
     if (result.alternatives.empty())
         throw InvalidInput("target", "no placement shows enough of it: it is thinner than a voxel or has no volume",
                            "give a solid target, or build the field with a higher resolution");
+    CoverageScratch scratch;
+    for (PlacementCandidate& one : result.alternatives) coverage.covered(one.state, one.covered, scratch);
     const PlacementCandidate& best = result.alternatives.front();
     result.placement = best.placement;
     result.state = best.state;

@@ -16,6 +16,9 @@ enum class ReliefChoice {
     always
 };
 
+/// Best IoU below which the target is hardly recognisable on the device.
+inline constexpr double kFitsNowhere = 0.15;
+
 struct AutoPlaceOptions {
     int orientations = 72; ///< spread evenly over all, beside those along the axes
     /// Relative to the scale at which the target, turned as it is, just fits the frame above the rest surface.
@@ -33,6 +36,7 @@ struct PlacementCandidate {
     double iou = 0.0;      ///< of the refined match there; with a relief, against the relief
     double iouModel = 0.0; ///< of the same state against the model as it stands there
     BitColumns wanted;     ///< what was matched, in the domain
+    BitColumns covered;    ///< V(state)
 };
 
 struct AutoPlacement {

@@ -22,8 +22,9 @@ namespace {
 constexpr const char *kBedModel = "ice pond", *kMeltwaterModel = "ice meltwater", *kRingModel = "ice ring";
 constexpr int kKoiPictures = 6;
 constexpr double kMeltModelEvery = 0.10, kFrostModelEvery = 0.07; ///< seconds between two models of a floe that changes
-constexpr double kRingSide = 0.0065;                              ///< of a drop's ring in the end, metres
-constexpr double kKeepsDry = 0.75;                                ///< of what ice stands over the water
+constexpr double kSharePerFrame = 0.4;  ///< of the pond's area, in which models are made anew in one frame
+constexpr double kRingSide = 0.0065;    ///< of a drop's ring in the end, metres
+constexpr double kKeepsDry = 0.75;      ///< of what ice stands over the water
 constexpr double kLetsGo = 0.4;         ///< seconds in which water takes its slope again, by a factor of e
 constexpr double kOverWater = 0.0004;   ///< metres
 constexpr double kWarmthHeight = 0.035; ///< of its light over the ice, metres
@@ -183,8 +184,10 @@ SceneAssets& Pond::changing() {
 }
 
 /// New models for floes whose shape has changed, none for those that are gone. What melts changes all the time, and a
-/// few times a second are enough for the eye.
+/// few times a second are enough for the eye; its picture follows a frame later, so that no frame bears both.
 void Pond::updateShapes(const IceCover& ice, double seconds) {
+    // Pieces that broke at once would all be due at once: a frame takes its share of the pond, and one piece at least.
+    double left = kSharePerFrame * ice.sheet().area();
     std::map<int, Shape> shapes;
     for (const Floe& floe : ice.floes()) {
         const auto known = shapes_.find(floe.number);
@@ -192,16 +195,21 @@ void Pond::updateShapes(const IceCover& ice, double seconds) {
         shape.age += seconds;
         const bool isNew = shape.model.empty() || ice.freezing() != shape.grows;
         const bool changes = shape.version != floe.version || shape.grows;
-        if (isNew || (changes && shape.age > (shape.grows ? kFrostModelEvery : kMeltModelEvery))) {
+        if (isNew || (changes && left > 0.0 && shape.age > (shape.grows ? kFrostModelEvery : kMeltModelEvery))) {
+            left -= floe.area;
             const bool first = shape.model.empty();
-            const FloeField before = std::exchange(shape.field, fieldOf(ice, floe));
+            if (!shape.paints) shape.painted = std::move(shape.field);
+            shape.field = fieldOf(ice, floe);
             shape.version = floe.version;
             shape.middle = floe.centre;
             shape.model = floeAsset(floe.number);
             shape.grows = ice.freezing();
             shape.age = 0.0;
-            picture_.paint(shape.field, first ? nullptr : &before);
+            if (first || shape.paints) picture_.paint(shape.field, first ? nullptr : &shape.painted);
+            shape.paints = !first && !shape.paints;
             changing().models[shape.model] = std::make_shared<const SceneModel>(floeModel(ice, floe, shape.field));
+        } else if (std::exchange(shape.paints, false)) {
+            picture_.paint(shape.field, &shape.painted);
         }
         shapes.emplace(floe.number, std::move(shape));
     }

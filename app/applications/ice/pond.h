@@ -51,6 +51,8 @@ private:
         bool grows = false;     ///< while frost does
         double age = 0.0;       ///< seconds since its model was made
         FloeField field;
+        FloeField painted;   ///< as the picture shows it, while that is behind
+        bool paints = false; ///< the picture is behind
     };
     void updateShapes(const IceCover& ice, double seconds);
     void updateWater(const IceCover& ice, Scene& scene, const glm::dvec2& waterSlope);

@@ -16,7 +16,6 @@ namespace lumorph::studio {
 namespace {
 
 constexpr int kGlideMilliseconds = 700;
-constexpr double kFitsNowhere = 0.15; ///< below this IoU the target is hardly recognisable
 
 /// Part of the way from one placement to another, the short way round.
 Placement between(const Placement& from, const Placement& to, double share) {
@@ -40,7 +39,7 @@ TargetPlacing::TargetPlacing(StudioDocument& document, JobSlots& jobs, Notices& 
     : document_(document), jobs_(jobs), notices_(notices) {
     connect(&document, &StudioDocument::changed, this, [this](StateParts parts) {
         if (parts & StatePart::field) placeNew();
-        if (parts & (StatePart::field | StatePart::target)) emit placesChanged();
+        if ((parts & (StatePart::field | StatePart::target)) && places().empty() == placesShown_) tellPlaces();
     });
 }
 
@@ -98,6 +97,11 @@ void TargetPlacing::keep(const std::shared_ptr<const MatchTarget>& target,
              tr("it fits nowhere on this device; this is its best place, at %1 IoU").arg(found.iou, 0, 'f', 2),
              tr("take a target with wide, low shapes, or a device that rises higher"),
              {}});
+    tellPlaces();
+}
+
+void TargetPlacing::tellPlaces() {
+    placesShown_ = !places().empty();
     emit placesChanged();
 }
 

@@ -40,6 +40,7 @@ private:
     void placeNew();
     void keep(const std::shared_ptr<const MatchTarget>& target, const std::shared_ptr<const MatchField>& field,
               const AutoPlacement& found, const Placement& stands);
+    void tellPlaces();
     void glideTo(const Placement& place, const QString& what);
 
     /// A target that was just opened and waits for its better place, and where it stands until then.
@@ -61,6 +62,7 @@ private:
         std::vector<PlacementCandidate> places;
     };
     Placed placed_;
+    bool placesShown_ = false; ///< as last told
 };
 
 } // namespace lumorph::studio

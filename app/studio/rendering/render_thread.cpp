@@ -137,7 +137,9 @@ void RenderThread::Data::tell(std::optional<QString> why) {
         const std::lock_guard lock(mutex);
         failure = std::move(why);
     }
-    emit owner.ready();
+    // In the window's thread: whoever connects right after making a RenderThread hears it, however fast the driver is.
+    QMetaObject::invokeMethod(
+        &owner, [this] { emit owner.ready(); }, Qt::QueuedConnection);
 }
 
 // A show that runs all day comes back by itself.

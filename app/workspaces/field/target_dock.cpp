@@ -143,12 +143,9 @@ private:
             placeButtons_[k]->setVisible(k < found.size());
             if (k >= found.size()) continue;
             const Coverage& coverage = studio_.document.state().field.field->coverage;
-            BitColumns covered;
-            CoverageScratch scratch;
-            coverage.covered(found[k].state, covered, scratch);
             const qreal ratio = devicePixelRatioF();
-            QImage picture =
-                pictureOf(reliefOf(coverage.body(), found[k].wanted, covered), kPlacePicture * ratio, currentPalette());
+            QImage picture = pictureOf(reliefOf(coverage.body(), found[k].wanted, found[k].covered),
+                                       kPlacePicture * ratio, currentPalette());
             picture.setDevicePixelRatio(ratio);
             placeButtons_[k]->setIcon(QPixmap::fromImage(picture));
             const QString iou = QString::number(found[k].iou, 'f', 2);
