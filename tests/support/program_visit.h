@@ -199,10 +199,9 @@ inline LongVisit visitForLong(ShowProgram& program, double seconds, double step,
     return visit;
 }
 
-/// What holds for each of them: a small part of a frame, memory that stays, servos that move within their limits.
-inline void expectLight(const LongVisit& visit) {
-    EXPECT_LE(visit.median(), 2.0) << "milliseconds";
-    EXPECT_LE(visit.percentile99(), 8.0) << "milliseconds";
+/// What holds for each of them: memory that stays, servos that move within their limits. What a frame takes is judged
+/// by the bench (application-*).
+inline void expectSteady(const LongVisit& visit) {
     EXPECT_LE(visit.fastest, 1.0 + 1e-9) << "of the velocity limit";
     EXPECT_GT(visit.fastest, 0.02) << "they do move";
     EXPECT_LT(visit.grown(&LongVisit::Memory::heap, 60.0), 5.0) << "megabytes after the first minute";

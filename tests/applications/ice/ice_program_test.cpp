@@ -222,8 +222,8 @@ TEST(IceProgram, TheTabletLiftsTheFloes) {
 }
 
 // Scripted visitors come and go, half an hour among the long tests; frames are longer than in a show, steps are not.
-TEST(IceProgram, VisitorsForLongAreLightAndLeaveTheMemoryAsItIs) {
-    const int minutes = test::longTests() ? 30 : 8;
+TEST(IceProgram, VisitorsForLongLeaveTheMemoryAsItIs) {
+    const int minutes = test::longTests() ? 30 : 4;
     IceProgram program(1);
     const test::LongVisit visit =
         test::visitForLong(program, 60.0 * minutes, 1.0 / 20.0, [](int k, double, ShowInputs& inputs) {
@@ -235,7 +235,7 @@ TEST(IceProgram, VisitorsForLongAreLightAndLeaveTheMemoryAsItIs) {
             if (somebody && k % 130 == 0) inputs.push({"key.next", 1.0});
             if (k % (20 * 90) == 20 * 89) inputs.push({"pointer.over", 0.0});
         });
-    test::expectLight(visit);
+    test::expectSteady(visit);
     EXPECT_LT(visit.grown(&test::LongVisit::Memory::resident, 60.0), 5.0) << "megabytes";
     EXPECT_GE(static_cast<int>(program.ice().winter()), minutes / 2);
 }
