@@ -265,9 +265,13 @@ private:
             halves.push_back(std::move(lower));
             halves.push_back(std::move(upper));
         }
-        tbb::parallel_for(std::size_t{0}, halves.size(), [&](std::size_t k) {
+        const auto bound = [&](std::size_t k) {
             if (!isOver()) boundHalf(halves[k], buffers_.local());
-        });
+        };
+        if (options_.oneThread)
+            for (std::size_t k = 0; k < halves.size(); ++k) bound(k);
+        else
+            tbb::parallel_for(std::size_t{0}, halves.size(), bound);
         bool improved = false;
         for (Half& half : halves) {
             if (half.seen && isBetter(half.seen->second, known_.quality)) {

@@ -27,6 +27,7 @@ struct Certificate {
 struct CertifyOptions {
     /// Actuators that move the same triangles are tabulated up to so many joint states, and bounded by boxes beyond.
     std::size_t mostTabulated = 2000;
+    bool oneThread = false; ///< works in the calling thread alone, else on all cores
 };
 
 /// Bounds the IoU that any state of a rig can reach on a target, ever tighter while it is given time.
@@ -35,7 +36,7 @@ struct CertifyOptions {
 /// lambda: columns that few actuators reach are tabulated and joined exactly (PieceTables; Dinkelbach, On nonlinear
 /// fractional programming, 1967), the others bounded over boxes of states (VolumeBounds, BoxBound) that are halved,
 /// the one with the largest bound first (branch and bound). A box of a few states is evaluated. The coverage must
-/// outlive it; uses all cores; one object for each thread.
+/// outlive it; one object for each thread.
 class Certifier {
 public:
     explicit Certifier(const Coverage& coverage, CertifyOptions options = {});

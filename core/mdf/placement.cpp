@@ -1,6 +1,7 @@
 #include "core/mdf/placement.h"
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <limits>
 
@@ -13,6 +14,21 @@
 
 namespace lumorph {
 
+namespace {
+
+/// All repairs in one sentence.
+std::string repairedBy(const std::vector<std::string>& actions) {
+    std::string text = "It was no closed solid and has been repaired for matching";
+    for (std::size_t k = 0; k < actions.size(); ++k) {
+        std::string action = actions[k].substr(0, actions[k].find_last_not_of('.') + 1);
+        if (!action.empty()) action[0] = static_cast<char>(std::tolower(static_cast<unsigned char>(action[0])));
+        text += (k == 0 ? ": " : "; ") + action;
+    }
+    return text + ".";
+}
+
+} // namespace
+
 bool isClosedSolid(const TriangleMesh& mesh) {
     const MeshReport report = checkMesh(mesh, IntersectionTest::skip);
     return report.closed() && report.manifold();
@@ -22,10 +38,7 @@ Target makeTarget(TriangleMesh mesh) {
     if (isClosedSolid(mesh)) return {std::move(mesh), true, {}};
     MeshRepair repair = repairMesh(mesh);
     if (repair.after.closed() && repair.after.manifold()) {
-        Target target{
-            std::move(repair.mesh), true, {"The target was no closed solid and has been repaired for matching."}};
-        target.warnings.insert(target.warnings.end(), repair.actions.begin(), repair.actions.end());
-        return target;
+        return {std::move(repair.mesh), true, {repairedBy(repair.actions)}};
     }
     Target target{std::move(mesh), false, repair.before.findings()};
     target.warnings.emplace_back("The target is not a closed solid; what counts as inside is estimated by winding "

@@ -278,4 +278,34 @@ FitQuality Refiner::qualityOf(const BitColumns& target, const State& state) {
     return search_->quality();
 }
 
+double iouBetweenLevels(const Coverage& coverage, const BitColumns& target, const State& state,
+                        const std::stop_token& stop) {
+    const double level = 1.0 / (coverage.levels() - 1);
+    CoverageScratch scratch;
+    BitColumns covered;
+    std::vector<double> strokes;
+    for (const Level of : state) strokes.push_back(of.index * level);
+    const auto iouAt = [&](const std::vector<double>& at) {
+        coverage.coveredAt(at, covered, scratch);
+        return compareVolumes(covered, target).iou();
+    };
+    double best = iouAt(strokes);
+    const auto moveBy = [&](std::size_t actuator, double step) {
+        std::vector<double> next = strokes;
+        next[actuator] = std::clamp(next[actuator] + step, 0.0, 1.0);
+        if (stop.stop_requested() || next == strokes) return false;
+        const double iou = iouAt(next);
+        if (iou <= best) return false;
+        best = iou;
+        strokes = std::move(next);
+        return true;
+    };
+    for (const double step : {0.5 * level, 0.25 * level}) {
+        bool helped = true;
+        while (std::exchange(helped, false))
+            for (std::size_t i = 0; i < strokes.size(); ++i) helped |= moveBy(i, step) || moveBy(i, -step);
+    }
+    return best;
+}
+
 } // namespace lumorph

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <stop_token>
 #include <vector>
 
 #include "core/base/clock.h"
@@ -61,5 +62,11 @@ private:
     class Search;
     std::unique_ptr<Search> search_;
 };
+
+/// The IoU of V near a joint state with strokes between the levels too: moves of single actuators by a half, then by a
+/// quarter of a level while they help. What it is more than the state's own is lost to the steps of levels. The target
+/// lies in the domain. Returns the best so far when `stop` is requested.
+[[nodiscard]] double iouBetweenLevels(const Coverage& coverage, const BitColumns& target, const State& state,
+                                      const std::stop_token& stop = {});
 
 } // namespace lumorph

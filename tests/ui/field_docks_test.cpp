@@ -91,6 +91,7 @@ protected:
     OwnFolders folders_;
     Studio studio_;
     Throttle numbers_{20};
+    FitCertificate certificate_{studio_.loop};
 };
 
 TEST_F(FieldDocks, DraggingASliderMovesOneActuatorAndStopsMatchingInOneStep) {
@@ -154,7 +155,7 @@ TEST_F(FieldDocks, ManyActuatorsShareOneEditor) {
 
 TEST_F(FieldDocks, MatchShowsTheNumbersOfTheFrameAndSwitchesTheMethod) {
     useTarget();
-    std::unique_ptr<QWidget> dock(makeMatchDock(studio_, numbers_));
+    std::unique_ptr<QWidget> dock(makeMatchDock(studio_, numbers_, certificate_));
     dock->show();
     ASSERT_TRUE(matched());
     numbers_.request();
@@ -181,6 +182,70 @@ TEST_F(FieldDocks, MatchShowsTheNumbersOfTheFrameAndSwitchesTheMethod) {
     EXPECT_EQ(studio_.document.undoStack().count(), 1);
 }
 
+/// The best IoU of all joint states.
+double bestOfAll(const Coverage& coverage, const BitColumns& target) {
+    CoverageScratch scratch;
+    BitColumns covered;
+    double best = 0.0;
+    State state(3);
+    for (state[0].index = 0; state[0].index < coverage.levels(); ++state[0].index)
+        for (state[1].index = 0; state[1].index < coverage.levels(); ++state[1].index)
+            for (state[2].index = 0; state[2].index < coverage.levels(); ++state[2].index) {
+                coverage.covered(state, covered, scratch);
+                best = std::max(best, compareVolumes(covered, target).iou());
+            }
+    return best;
+}
+
+TEST_F(FieldDocks, MatchSaysHowFarItIsFromTheBestPossibleWhileNothingMoves) {
+    useTarget();
+    std::unique_ptr<QWidget> dock(makeMatchDock(studio_, numbers_, certificate_));
+    dock->show();
+    auto* bound = find<QLabel>(*dock, "match.bound");
+    ASSERT_TRUE(matched());
+    test::pass(std::chrono::milliseconds(600));
+    EXPECT_FALSE(certificate_.known()) << "nobody looks";
+    certificate_.setActive(true);
+    for (const float x : {0.0F, 0.013F}) {
+        studio_.document.change("Move", [&](StudioState& state) { state.placement.translation.x += x; });
+        if (x != 0.0F)
+            ASSERT_TRUE(test::eventually([&] { return !certificate_.known(); })) << "it was of another place";
+        ASSERT_TRUE(test::eventually([&] { return certificate_.known() && certificate_.known()->betweenLevels; })) << x;
+        const StudioState& state = studio_.document.state();
+        const Coverage& coverage = state.field.field->coverage;
+        SolidVoxelizer voxelizer;
+        BitColumns target;
+        voxelizeTarget(state.field.field->field.frame,
+                       {placed(state.target.target->solid.mesh, state.placement), true, {}}, voxelizer, target);
+        target &= coverage.domain();
+        const double best = bestOfAll(coverage, target);
+        EXPECT_NEAR(certificate_.known()->certificate.upperBound, best, 1e-9) << "a rig so small is solved";
+        EXPECT_GE(*certificate_.known()->betweenLevels, certificate_.known()->certificate.quality.iou());
+        const double gap = best - studio_.loop.frame()->iouWanted;
+        EXPECT_TRUE(test::eventually([&] {
+            return bound->text().startsWith(gap > 1e-9 ? "At most 0." : "No state of this device fits better.");
+        })) << bound->text().toStdString();
+    }
+}
+
+TEST(CertificateText, IsRoundedSoThatItHolds) {
+    const auto said = [](double bound, double iou, bool done, std::optional<double> between) {
+        FitCertificate::Known known;
+        known.certificate.upperBound = bound;
+        known.certificate.done = done;
+        known.certificate.quality = {40, 60, 0}; // 0.4
+        known.betweenLevels = between;
+        return certificateText(known, iou).toStdString();
+    };
+    EXPECT_EQ(certificateText(std::nullopt, 0.4).toStdString(), "");
+    EXPECT_EQ(said(1.0, 0.4, false, std::nullopt), "Looking for how much better it could be...");
+    EXPECT_EQ(said(0.431, 0.4, false, std::nullopt),
+              "At most 0.04 from the best possible: no state of this device reaches more than 0.44.");
+    EXPECT_EQ(said(0.4, 0.4, true, 0.42),
+              "No state of this device fits better. 0.02 are lost to the steps between levels.");
+    EXPECT_EQ(said(0.4, 0.4, true, 0.401), "No state of this device fits better.");
+}
+
 TEST_F(FieldDocks, TheFirstActuatorWithACurveIsChosenUntilTheUserDoes) {
     useTarget();
     // Only the last of three lifters is near the target, so that the first ones have no curve.
@@ -200,7 +265,7 @@ TEST_F(FieldDocks, TheFirstActuatorWithACurveIsChosenUntilTheUserDoes) {
     }
     ASSERT_TRUE(first && *first > 0) << "no place of the target leaves the first actuator out";
     studio_.document.reset(state, {});
-    std::unique_ptr<QWidget> dock(makeMatchDock(studio_, numbers_));
+    std::unique_ptr<QWidget> dock(makeMatchDock(studio_, numbers_, certificate_));
     dock->show();
     auto* table = find<QTreeView>(*dock, "match.actuators");
     EXPECT_TRUE(test::eventually([&] {
@@ -214,7 +279,7 @@ TEST_F(FieldDocks, TheFirstActuatorWithACurveIsChosenUntilTheUserDoes) {
 
 TEST_F(FieldDocks, DraggingInAnErrorCurveTriesALevelAndLetsGo) {
     useTarget();
-    std::unique_ptr<QWidget> dock(makeMatchDock(studio_, numbers_));
+    std::unique_ptr<QWidget> dock(makeMatchDock(studio_, numbers_, certificate_));
     dock->resize(320, 900);
     dock->show();
     ASSERT_TRUE(matched());

@@ -18,6 +18,7 @@
 #include "app/workspaces/field/field_dock.h"
 #include "app/workspaces/field/field_exports.h"
 #include "app/workspaces/field/field_story_window.h"
+#include "app/workspaces/field/fit_certificate.h"
 #include "app/workspaces/field/match_dock.h"
 #include "app/workspaces/field/pose_commands.h"
 #include "app/workspaces/field/pose_desk.h"
@@ -94,6 +95,7 @@ struct FieldWorkspace::Data : public QObject {
     bool unframed = true; ///< another device came: the view has to find it
     QTimer pending;
     Throttle numbers{kNumbersMilliseconds};
+    FitCertificate certificate{studio.loop};
 
     [[nodiscard]] ViewportWidget* view() const { return stage ? stage->viewport() : nullptr; }
     void listen();
@@ -258,7 +260,8 @@ std::vector<WorkspaceDock> FieldWorkspace::makeDocks() {
     return {{"dock.actuators", "Actuators", "actuator", makeActuatorDock(studio), Qt::LeftDockWidgetArea, false},
             {"dock.field", "Field", "field", field, Qt::LeftDockWidgetArea, true},
             {"dock.target", "Target", "target", target, Qt::RightDockWidgetArea, false},
-            {"dock.match", "Match", "live", makeMatchDock(studio, data_->numbers), Qt::RightDockWidgetArea, false},
+            {"dock.match", "Match", "live", makeMatchDock(studio, data_->numbers, data_->certificate),
+             Qt::RightDockWidgetArea, false},
             {"dock.poses", "Poses", "mark", makePoseDock(studio, data_->poses), Qt::BottomDockWidgetArea, false, true}};
 }
 
@@ -271,6 +274,7 @@ bool FieldWorkspace::setForVisitors(bool on) {
 
 void FieldWorkspace::setSeen(bool seen) {
     data_->seen = seen;
+    data_->certificate.setActive(seen);
     if (!data_->view()) return;
     data_->view()->setActive(seen);
     data_->refresh();

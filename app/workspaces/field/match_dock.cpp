@@ -62,7 +62,8 @@ private:
 
 class MatchDock : public QWidget {
 public:
-    MatchDock(Studio& studio, Throttle& numbers) : studio_(studio), due_(numbers), stack_(new QStackedLayout(this)) {
+    MatchDock(Studio& studio, Throttle& numbers, const FitCertificate& certificate)
+        : studio_(studio), due_(numbers), certificate_(certificate), stack_(new QStackedLayout(this)) {
         const auto empty = [&](const char* icon, const char* title, const char* text, const char* command) {
             stack_->addWidget(makeEmptyState(icon, title, text, studio.commands.find(command), this));
         };
@@ -81,6 +82,7 @@ public:
         addTimes();
         column_.layout->addStretch(1);
         connect(&numbers, &Throttle::due, this, [this] { refresh(); });
+        connect(&certificate, &FitCertificate::changed, &numbers, &Throttle::request);
         connect(&studio.document, &StudioDocument::changed, this, [this] { refresh(); });
         connect(&studio.driver, &DriverControl::changed, this, [this] { refresh(); });
         refresh();
@@ -259,6 +261,7 @@ private:
              {static_cast<QWidget*>(numbers_), static_cast<QWidget*>(table_), static_cast<QWidget*>(plot_)})
             part->setEnabled(!left);
         numbers_->show(*frame, follows && state.matching.method == MatchMethod::refined);
+        numbers_->showBound(frame->matched ? certificateText(certificate_.known(), frame->iouWanted) : QString());
         beyond_->show(frame->matched && !left ? frame->shareBeyondFrame : 0.0);
         unreachable_->show(frame->matched && !left ? frame->shareUnreachable : 0.0);
         const bool helps = !studio_.project.autoPlaced(); // it is not offered where it just ran
@@ -314,6 +317,7 @@ private:
 
     Studio& studio_;
     Throttle& due_;
+    const FitCertificate& certificate_;
     QStackedLayout* stack_;
     Column column_ = makeColumn(this);
     MatchNumbers* numbers_ = new MatchNumbers(column_.widget);
@@ -335,6 +339,8 @@ private:
 
 } // namespace
 
-QWidget* makeMatchDock(Studio& studio, Throttle& numbers) { return new MatchDock(studio, numbers); }
+QWidget* makeMatchDock(Studio& studio, Throttle& numbers, const FitCertificate& certificate) {
+    return new MatchDock(studio, numbers, certificate);
+}
 
 } // namespace lumorph::studio

@@ -62,7 +62,7 @@ QWidget* makeVolume(bool unmatched, const QString& text, const QString& hint, QL
 QWidget* makeChip(bool unmatched, QWidget* parent) { return new Chip(unmatched, parent); }
 
 MatchNumbers::MatchNumbers(QWidget* parent)
-    : QWidget(parent), iou_(new QLabel(this)), word_(muted({}, this)), rest_(muted({}, this)),
+    : QWidget(parent), iou_(new QLabel(this)), word_(muted({}, this)), rest_(muted({}, this)), bound_(muted({}, this)),
       voting_(makeNumber("match.iou.voting", "0.00", this)), wanted_(makeNumber("match.iou.wanted", "0.00", this)),
       reached_(makeNumber("match.iou.reached", "0.00", this)),
       unmatched_(makeNumber("match.unmatched", "0000 cm³", this)),
@@ -100,6 +100,12 @@ MatchNumbers::MatchNumbers(QWidget* parent)
     rest_->setWordWrap(true);
     rest_->setMinimumHeight(fontMetrics().lineSpacing()); // what is below stays where it is while a target moves
     grid->addWidget(rest_, 6, 0, 1, 4);
+    bound_->setObjectName("match.bound");
+    bound_->setWordWrap(true);
+    bound_->setMinimumHeight(2 * fontMetrics().lineSpacing()); // likewise while it becomes known
+    bound_->setToolTip(tr("Certified for the target as it stands, over all joint states at the field's levels. It gets "
+                          "tighter for half a minute while nothing moves."));
+    grid->addWidget(bound_, 7, 0, 1, 4);
 }
 
 void MatchNumbers::show(const MatchFrame& frame, bool refined) {
@@ -117,5 +123,7 @@ void MatchNumbers::show(const MatchFrame& frame, bool refined) {
                                             : tr("poor"));
     rest_->setText(known ? whyNotBetter(frame) : QString());
 }
+
+void MatchNumbers::showBound(const QString& sentence) { bound_->setText(sentence); }
 
 } // namespace lumorph::studio

@@ -36,9 +36,10 @@ public:
         addTip("tip", "T&ip", "Forwards, about the axis from left to right", 0);
         addTip("roll", "&Roll", "Sideways, about the axis from back to front", 2);
         add(
-            {"size", "Si&ze", "100 % is the size the file says"}, Quantity::share, 1e-6, 1e6, 1.0, 0.01,
-            [](const Placement& placement) { return placement.scale; },
-            [](Placement& placement, double value) { placement.scale = value; });
+            {"size", "Si&ze", "The target's longest side"}, Quantity::length, 1e-4, kFarthest, 0.1, 0.001,
+            [this](const Placement& placement) { return placement.scale * longestSide(); }, [side = [this] {
+                return longestSide();
+            }](Placement& placement, double value) { placement.scale = value / side(); });
         connect(&document, &StudioDocument::changed, this, [this](StateParts parts) {
             if (parts & (StatePart::placement | StatePart::target)) refresh();
         });
@@ -55,6 +56,14 @@ private:
         ValueField* field = nullptr;
         Get get;
     };
+
+    /// Metres, as its file says; 1 without a target.
+    [[nodiscard]] double longestSide() const {
+        const auto& target = document_.state().target.target;
+        if (!target) return 1.0;
+        const glm::vec3 size = target->box.size();
+        return std::max(1e-9, static_cast<double>(std::max({size.x, size.y, size.z})));
+    }
 
     void addLength(const QString& name, const QString& label, const QString& hint, int axis) {
         add(

@@ -226,7 +226,8 @@ private:
             return;
         }
         refreshPlaces(state);
-        const glm::vec3 size = target->box.size() * static_cast<float>(state.placement.scale);
+        const glm::vec3 size =
+            boundingBox(cornersOf(target->box, state.placement.deviceFromTarget())).size(); // turned and tipped, too
         size_->setText(sizeText(size.x, size.y, size.z));
         spin_->setValue(state.playback.spin);
         if (target != shown_) describe(*target);

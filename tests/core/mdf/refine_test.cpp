@@ -54,6 +54,23 @@ TEST_P(RefineOnRig, FindsHiddenStatesFromRest) {
     EXPECT_GE(worst, 0.9);
 }
 
+TEST_P(RefineOnRig, BetweenLevelsIsFoundWhatLiesThere) {
+    std::mt19937 random(29);
+    for (int i = 0; i < 6; ++i) {
+        State hidden(3);
+        for (Level& level : hidden) level.index = 2 + static_cast<int>(random() % (kRefineLevels - 3));
+        const BitColumns onLevels = volumeOf(hidden);
+        EXPECT_EQ(iouBetweenLevels(*coverage_, onLevels, hidden), 1.0);
+        std::vector<double> strokes;
+        for (const Level level : hidden) strokes.push_back((level.index - 0.5) / (kRefineLevels - 1));
+        BitColumns between;
+        coverage_->coveredAt(strokes, between, scratch_);
+        Refiner refiner(*coverage_);
+        const double own = refiner.qualityOf(between, hidden).iou();
+        EXPECT_GE(iouBetweenLevels(*coverage_, between, hidden), own + 0.6 * (1.0 - own)) << own;
+    }
+}
+
 TEST_P(RefineOnRig, LeavesWhatIsHeldWhereItStarts) {
     Refiner refiner(*coverage_);
     const BitColumns target = volumeOf({Level{6}, Level{7}, Level{5}});
