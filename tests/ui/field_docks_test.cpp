@@ -208,8 +208,9 @@ TEST_F(FieldDocks, MatchSaysHowFarItIsFromTheBestPossibleWhileNothingMoves) {
     certificate_.setActive(true);
     for (const float x : {0.0F, 0.013F}) {
         studio_.document.change("Move", [&](StudioState& state) { state.placement.translation.x += x; });
-        if (x != 0.0F)
+        if (x != 0.0F) {
             ASSERT_TRUE(test::eventually([&] { return !certificate_.known(); })) << "it was of another place";
+        }
         ASSERT_TRUE(test::eventually([&] { return certificate_.known() && certificate_.known()->betweenLevels; })) << x;
         const StudioState& state = studio_.document.state();
         const Coverage& coverage = state.field.field->coverage;
