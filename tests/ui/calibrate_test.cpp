@@ -394,6 +394,8 @@ TEST(CalibrationQuestion, WhatMayBeSoIsAskedAndUsedWithAYes) {
     EXPECT_EQ(asked(length).title, "Are these lengths right?");
     const Finding turned{Cause::phaseOrder, "", "", "the projector would hang upside down", "check the steps' order"};
     EXPECT_EQ(asked(turned).title, "Does the projector hang upside down?");
+    EXPECT_EQ(studio::wordsOfDoubt(size).title, "Is the projector's size right?") << "it is not stated";
+    EXPECT_EQ(studio::wordsOf(size).title, "The projector has another size") << "of a refusal it is";
 }
 
 TEST(CalibrationPoses, AreSolvedAgainWhereTheResultLacksOneAndTheFreeNumberIsTaken) {

@@ -32,6 +32,20 @@ QString capitalised(const std::string& words) {
     return text;
 }
 
+/// What may be so, and only who was there can tell; empty for what is certain.
+QString questionOf(Cause cause) {
+    switch (cause) {
+    case Cause::projectorSize:
+        return tr("Is the projector's size right?");
+    case Cause::phaseOrder:
+        return tr("Does the projector hang upside down?");
+    case Cause::unlikelyLength:
+        return tr("Are these lengths right?");
+    default:
+        return {};
+    }
+}
+
 QString wayWords(const CalibrationSetup& setup) {
     switch (setup.way) {
     case CaptureWay::folder:
@@ -135,7 +149,7 @@ CalibrationStep solvedStep(const CalibrationState& state, const QString& id, con
     } else if (state.result) {
         const auto doubts = doubtsOf(*state.result);
         step.how = doubts.empty() ? How::good : How::doubtful;
-        step.words = doubts.empty() ? lensWords(state.result->solved.*device) : wordsOf(doubts.front()).title;
+        step.words = doubts.empty() ? lensWords(state.result->solved.*device) : wordsOfDoubt(doubts.front()).title;
     }
     return step;
 }
@@ -287,21 +301,16 @@ NextStep solvedNext(const CalibrationState& state) {
         next.title = tr("This calibration is good");
         next.text = within + ' ' + nextPoseWords(state);
     } else {
-        const FindingWords words = wordsOf(doubts.front());
+        const FindingWords words = wordsOfDoubt(doubts.front());
         next.title = words.title;
         next.text = words.text + ' ' + words.remedy;
-        // What may be so, and only who was there can tell.
         const Cause cause = doubts.front().cause;
-        const bool isQuestion =
-            cause == Cause::projectorSize || cause == Cause::unlikelyLength || cause == Cause::phaseOrder;
-        if (isQuestion) {
-            next.title = cause == Cause::projectorSize ? tr("Has the projector %1 × %2 pixels?")
-                                                             .arg(result.solved.projector.size.width)
-                                                             .arg(result.solved.projector.size.height)
-                         : cause == Cause::phaseOrder ? tr("Does the projector hang upside down?")
-                                                      : tr("Are these lengths right?");
-            next.button = tr("Yes, use this calibration");
-        }
+        const bool isQuestion = !questionOf(cause).isEmpty();
+        if (cause == Cause::projectorSize)
+            next.title = tr("Has the projector %1 × %2 pixels?")
+                             .arg(result.solved.projector.size.width)
+                             .arg(result.solved.projector.size.height);
+        if (isQuestion) next.button = tr("Yes, use this calibration");
         const bool isHelpedByPose = cause != Cause::clipped && !isQuestion;
         if (state.setup.way != CaptureWay::folder && isHelpedByPose) {
             next.what = Do::photograph;
@@ -538,6 +547,12 @@ NextStep nextOf(const CalibrationState& state) {
             isOld(state) ? tr("A pose is not in the result yet") : tr("All poses are there"),
             {},
             tr("Work out camera and projector")};
+}
+
+FindingWords wordsOfDoubt(const Finding& finding) {
+    FindingWords words = wordsOf(finding);
+    if (const QString question = questionOf(finding.cause); !question.isEmpty()) words.title = question;
+    return words;
 }
 
 FindingWords wordsOf(const Finding& finding) {

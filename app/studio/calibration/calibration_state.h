@@ -128,6 +128,8 @@ struct FindingWords {
     QString title, text, remedy;
 };
 [[nodiscard]] FindingWords wordsOf(const Finding& finding);
+/// The same as a doubt beside a result: what only who was there can tell is asked, not stated.
+[[nodiscard]] FindingWords wordsOfDoubt(const Finding& finding);
 
 /// Reasons why a result is to be doubted, the gravest first; none: it is good.
 [[nodiscard]] std::vector<Finding> doubtsOf(const CalibrationResult& result);

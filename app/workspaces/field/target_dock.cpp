@@ -87,7 +87,7 @@ private:
         name_ = makeText("target.name", "heading", column_.widget);
         about_ = makeText("target.about", "muted", column_.widget);
         size_ = makeText("target.extent", "muted", column_.widget);
-        size_->setToolTip("Width, height and depth as placed");
+        size_->setToolTip("Width, height and depth at this size, before it is turned and tipped");
         warnings_ = makeText("target.warnings", "warning", column_.widget);
         column_.layout->addWidget(name_);
         column_.layout->addWidget(about_);
@@ -226,8 +226,7 @@ private:
             return;
         }
         refreshPlaces(state);
-        const glm::vec3 size =
-            boundingBox(cornersOf(target->box, state.placement.deviceFromTarget())).size(); // turned and tipped, too
+        const glm::vec3 size = target->box.size() * static_cast<float>(state.placement.scale);
         size_->setText(sizeText(size.x, size.y, size.z));
         spin_->setValue(state.playback.spin);
         if (target != shown_) describe(*target);
