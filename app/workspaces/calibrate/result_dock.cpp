@@ -185,7 +185,8 @@ private:
                 delete item;
             }
             for (const auto& [finding, refusal] : findings)
-                findings_->layout()->addWidget(makeFindingCard(refusal ? wordsOf(finding) : wordsOfDoubt(finding), refusal, findings_));
+                findings_->layout()->addWidget(
+                    makeFindingCard(refusal ? wordsOf(finding) : wordsOfDoubt(finding), refusal, findings_));
         }
         figures_->setVisible(state.result != nullptr);
         // A file has no points to draw; of poses it may have figures.
