@@ -205,6 +205,8 @@ QWidget* RigSuggest::makeResult() {
     hint_->setProperty("look", "muted");
     hint_->setWordWrap(true);
     hint_->setText("Point at a dot to see its bend lines; click it to choose it.");
+    hint_->setToolTip("All designs are judged by the same shapes at the same places. What it can be places each shape "
+                      "anew for one device, so that its figure differs.");
     hint_->setFixedHeight(card_->height());
     hint_->setAlignment(Qt::AlignTop);
     use_->setObjectName("rig.suggest.use");
