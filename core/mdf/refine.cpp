@@ -279,7 +279,7 @@ FitQuality Refiner::qualityOf(const BitColumns& target, const State& state) {
 }
 
 double iouBetweenLevels(const Coverage& coverage, const BitColumns& target, const State& state,
-                        const std::stop_token& stop) {
+                        const std::function<bool()>& isOver) {
     const double level = 1.0 / (coverage.levels() - 1);
     CoverageScratch scratch;
     BitColumns covered;
@@ -293,7 +293,7 @@ double iouBetweenLevels(const Coverage& coverage, const BitColumns& target, cons
     const auto moveBy = [&](std::size_t actuator, double step) {
         std::vector<double> next = strokes;
         next[actuator] = std::clamp(next[actuator] + step, 0.0, 1.0);
-        if (stop.stop_requested() || next == strokes) return false;
+        if (next == strokes || (isOver && isOver())) return false;
         const double iou = iouAt(next);
         if (iou <= best) return false;
         best = iou;

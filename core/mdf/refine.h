@@ -1,7 +1,7 @@
 #pragma once
 
+#include <functional>
 #include <memory>
-#include <stop_token>
 #include <vector>
 
 #include "core/base/clock.h"
@@ -65,8 +65,8 @@ private:
 
 /// The IoU of V near a joint state with strokes between the levels too: moves of single actuators by a half, then by a
 /// quarter of a level while they help. What it is more than the state's own is lost to the steps of levels. The target
-/// lies in the domain. Returns the best so far when `stop` is requested.
+/// lies in the domain. Ends with the best so far as soon as `isOver` says so; empty: never.
 [[nodiscard]] double iouBetweenLevels(const Coverage& coverage, const BitColumns& target, const State& state,
-                                      const std::stop_token& stop = {});
+                                      const std::function<bool()>& isOver = {});
 
 } // namespace lumorph

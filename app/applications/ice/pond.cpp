@@ -22,7 +22,7 @@ namespace {
 constexpr const char *kBedModel = "ice pond", *kMeltwaterModel = "ice meltwater", *kRingModel = "ice ring";
 constexpr int kKoiPictures = 6;
 constexpr double kMeltModelEvery = 0.10, kFrostModelEvery = 0.07; ///< seconds between two models of a floe that changes
-constexpr double kSharePerFrame = 0.4;  ///< of the pond's area, in which models are made anew in one frame
+constexpr double kSharePerFrame = 0.4;  ///< of the pond's area, in which models are made anew in a short frame
 constexpr double kRingSide = 0.0065;    ///< of a drop's ring in the end, metres
 constexpr double kKeepsDry = 0.75;      ///< of what ice stands over the water
 constexpr double kLetsGo = 0.4;         ///< seconds in which water takes its slope again, by a factor of e
@@ -187,7 +187,8 @@ SceneAssets& Pond::changing() {
 /// few times a second are enough for the eye; its picture follows a frame later, so that no frame bears both.
 void Pond::updateShapes(const IceCover& ice, double seconds) {
     // Pieces that broke at once would all be due at once: a frame takes its share of the pond, and one piece at least.
-    double left = kSharePerFrame * ice.sheet().area();
+    // Long frames take more, so that the last pieces in the list are not left out for ever.
+    double left = std::max(kSharePerFrame, seconds / kFrostModelEvery) * ice.sheet().area();
     std::map<int, Shape> shapes;
     for (const Floe& floe : ice.floes()) {
         const auto known = shapes_.find(floe.number);

@@ -62,7 +62,7 @@ private:
         std::vector<PlacementCandidate> places;
     };
     Placed placed_;
-    bool placesShown_ = false; ///< as last told
+    bool placesShown_ = false; ///< at the last placesChanged
 };
 
 } // namespace lumorph::studio

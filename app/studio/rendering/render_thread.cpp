@@ -137,7 +137,8 @@ void RenderThread::Data::tell(std::optional<QString> why) {
         const std::lock_guard lock(mutex);
         failure = std::move(why);
     }
-    // In the window's thread: whoever connects right after making a RenderThread hears it, however fast the driver is.
+    // In the window's thread: whoever connects right after making a RenderThread receives it, however fast the driver
+    // is.
     QMetaObject::invokeMethod(
         &owner, [this] { emit owner.ready(); }, Qt::QueuedConnection);
 }

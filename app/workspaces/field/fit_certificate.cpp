@@ -18,9 +18,10 @@ namespace lumorph::studio {
 namespace {
 
 constexpr int kRestMilliseconds = 400;
-constexpr Microseconds kSlice{50'000};      ///< between looks at whether it is still wanted
-constexpr Microseconds kTellEvery{200'000}; ///< between two bounds that are told
+constexpr Microseconds kSlice{50'000};        ///< between looks at whether it is still wanted
+constexpr Microseconds kReportEvery{200'000}; ///< between two bounds that are shown
 constexpr Microseconds kLongest{30'000'000};
+constexpr Microseconds kLongestBetween{5'000'000}; ///< for strokes between the levels
 
 /// As the loop has them.
 BitColumns voxelsOf(const MatchFrame& frame) {
@@ -93,14 +94,16 @@ private:
             while (!known.certificate.done && clock.now() < end) {
                 known.certificate = certifier.tighten(kSlice, clock, unwanted);
                 if (unwanted.stop_requested()) return;
-                if (!known.certificate.done && clock.now() < told + kTellEvery) continue;
+                if (!known.certificate.done && clock.now() < told + kReportEvery) continue;
                 told = clock.now();
                 tell_(frame, known);
             }
             target &= frame->field->coverage.domain();
-            known.betweenLevels = iouBetweenLevels(frame->field->coverage, target, known.certificate.best, unwanted);
+            const Microseconds last = clock.now() + kLongestBetween;
+            known.betweenLevels = iouBetweenLevels(frame->field->coverage, target, known.certificate.best,
+                                                   [&] { return unwanted.stop_requested() || clock.now() >= last; });
             if (!unwanted.stop_requested()) tell_(frame, known);
-        } catch (const std::exception&) { // nothing is told of it then
+        } catch (const std::exception&) { // no bound is shown then
         }
     }
 

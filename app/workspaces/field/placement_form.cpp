@@ -37,9 +37,8 @@ public:
         addTip("roll", "&Roll", "Sideways, about the axis from back to front", 2);
         add(
             {"size", "Si&ze", "The target's longest side"}, Quantity::length, 1e-4, kFarthest, 0.1, 0.001,
-            [this](const Placement& placement) { return placement.scale * longestSide(); }, [side = [this] {
-                return longestSide();
-            }](Placement& placement, double value) { placement.scale = value / side(); });
+            [this](const Placement& placement) { return placement.scale * longestSide(); },
+            [this](Placement& placement, double value) { placement.scale = value / longestSide(); });
         connect(&document, &StudioDocument::changed, this, [this](StateParts parts) {
             if (parts & (StatePart::placement | StatePart::target)) refresh();
         });

@@ -223,7 +223,7 @@ TEST(IceProgram, TheTabletLiftsTheFloes) {
 
 // Scripted visitors come and go, half an hour among the long tests; frames are longer than in a show, steps are not.
 TEST(IceProgram, VisitorsForLongLeaveTheMemoryAsItIs) {
-    const int minutes = test::longTests() ? 30 : 4;
+    const int minutes = test::longTests() ? 30 : 8;
     IceProgram program(1);
     const test::LongVisit visit =
         test::visitForLong(program, 60.0 * minutes, 1.0 / 20.0, [](int k, double, ShowInputs& inputs) {
