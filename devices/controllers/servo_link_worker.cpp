@@ -1,5 +1,6 @@
 #include "devices/controllers/servo_link_worker.h"
 
+#include <algorithm>
 #include <deque>
 #include <limits>
 #include <utility>
@@ -13,7 +14,8 @@
 namespace lumorph {
 namespace {
 
-constexpr std::size_t kRowsAtOnce = 2000; // of the trace: a long history must not hold up a STOP
+constexpr Microseconds kHandPause{50'000}; // also of a link that is off
+constexpr std::size_t kRowsAtOnce = 2000;  // of the trace: a long history must not hold up a STOP
 constexpr Microseconds kFailsafeAgain{2'000'000};
 constexpr Microseconds kQuitAtLast{4'000'000}; // by the steady clock, whatever the engine's may do
 
@@ -213,7 +215,10 @@ void LinkWorker::work(LinkOrders orders) {
     data.events.publish(data.status());
 }
 
-Microseconds LinkWorker::pause() const { return data_->engine.pause(); }
+Microseconds LinkWorker::pause() const {
+    const Microseconds pause = data_->engine.pause();
+    return data_->trace.hasMore() ? std::min(pause, kHandPause) : pause;
+}
 
 bool LinkWorker::done() const { return data_->engine.done() || (data_->quitBy && steadyNow() >= *data_->quitBy); }
 

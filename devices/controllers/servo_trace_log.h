@@ -28,6 +28,8 @@ public:
     void setSink(Sink sink);
     /// Hands on so many rows at most.
     void hand(std::size_t most);
+    /// Whether rows wait for a sink.
+    [[nodiscard]] bool hasMore() const noexcept { return sink_ && !atEnd(); }
 
 private:
     /// Where the next row is read.

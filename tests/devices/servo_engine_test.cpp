@@ -452,5 +452,22 @@ TEST(ServoEngine, ServosThatWereOnTheirWayWhenTheBoardFellSilentAreNotTakenToBeK
         }
 }
 
+TEST(ServoEngine, PausesLongOnlyWhileTheLinkIsSwitchedOff) {
+    constexpr Microseconds kShort{50'000}, kLong{500'000};
+    DeviceProfile profile;
+    profile.address = "sim://tablet";
+    profile.servos = {{.channel = 2}};
+    EngineBench bench(profile);
+    EXPECT_GE(bench.engine.pause(), kLong) << "not connected yet";
+    ASSERT_TRUE(bench.connect());
+    EXPECT_LE(bench.engine.pause(), kShort);
+    bench.fault([](BoardFaults& faults) { faults.unplugged = true; });
+    bench.run(1.0);
+    EXPECT_LE(bench.engine.pause(), kShort) << "it waits for the board to come back";
+    bench.tell(in::Disconnect{});
+    bench.run(1.0);
+    EXPECT_GE(bench.engine.pause(), kLong);
+}
+
 } // namespace
 } // namespace lumorph
