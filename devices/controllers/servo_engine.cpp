@@ -13,6 +13,7 @@ namespace {
 
 constexpr Microseconds kBusyPause{5'000};
 constexpr Microseconds kIdlePause{50'000};
+constexpr Microseconds kOffPause{1'000'000}; // an order wakes it; the processor rests
 constexpr Microseconds kStaysBusy{200'000};   // after the last motion: the rate cap may hold its end back
 constexpr Microseconds kCloseAtLast{750'000}; // after the time to close: not all was sent, or servos may not be limp
 constexpr Microseconds kTrustedRest{2'000'000};
@@ -276,6 +277,7 @@ Microseconds ServoEngine::commandPeriod() const {
 
 Microseconds ServoEngine::pause() const {
     const Data& data = *data_;
+    if (idle() && !data.wanted) return kOffPause;
     const bool waits = data.closeAfter || data.restUntil || data.stalledSince;
     const ControllerState& state = data.controller->state();
     const bool asks = data.open && (state.phase == ControllerPhase::handshake || state.detaching);

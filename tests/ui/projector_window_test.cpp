@@ -59,7 +59,9 @@ protected:
         ProjectorWindow* window = outputs.window(0);
         if (window == nullptr) return nullptr;
         EXPECT_TRUE(QTest::qWaitForWindowActive(window));
-        EXPECT_TRUE(eventually([&] { return window->isFullScreen(); }, 5s));
+        // The window manager says that it is full screen before it gives it the screen's size.
+        EXPECT_TRUE(
+            eventually([&] { return window->isFullScreen() && window->size() == window->screen()->size(); }, 5s));
         return window;
     }
 
