@@ -21,10 +21,10 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr std::string_view kScheme = "genicam://";
+constexpr std::string_view kGenicamScheme = "genicam://";
 constexpr guint kBuffers = 4;
-constexpr guint64 kLook = 50'000; ///< microseconds between looks at whether it is still wanted
-constexpr auto kPatience = 10s;   ///< for a picture
+constexpr guint64 kPopWait = 50'000; ///< microseconds between looks at whether it is still wanted
+constexpr auto kFrameWithin = 10s;   ///< for a picture
 constexpr int kMostIncomplete = 20;
 constexpr gint64 kDrift = 5;    ///< microseconds a frame, of the camera's clock against this machine's
 constexpr int kLeastSide = 200; ///< pixels: no board is read in less
@@ -102,19 +102,19 @@ cv::Mat pictureOf(ArvBuffer* buffer, const Format& format) {
 
 class GenicamCamera final : public CaptureCamera {
 public:
-    explicit GenicamCamera(const std::string& address) : address_(address), id_(address.substr(kScheme.size())) {
+    explicit GenicamCamera(const std::string& address) : address_(address), id_(address.substr(kGenicamScheme.size())) {
         open({});
     }
     ~GenicamCamera() override { close(); }
 
     [[nodiscard]] cv::Mat grab(const Progress& progress) override {
         const gint64 called = g_get_real_time();
-        const auto until = std::chrono::steady_clock::now() + kPatience;
+        const auto until = std::chrono::steady_clock::now() + kFrameWithin;
         int incomplete = 0;
         while (std::chrono::steady_clock::now() < until) {
             progress.throwIfCancelled();
             if (isLost_) reopen(progress, until);
-            ArvBuffer* buffer = arv_stream_timeout_pop_buffer(stream_.get(), kLook);
+            ArvBuffer* buffer = arv_stream_timeout_pop_buffer(stream_.get(), kPopWait);
             if (!buffer) continue;
             const bool isWhole = arv_buffer_get_status(buffer) == ARV_BUFFER_STATUS_SUCCESS;
             cv::Mat picture;
@@ -286,7 +286,7 @@ private:
 
 } // namespace
 
-bool isGenicamAddress(const std::string& address) { return address.starts_with(kScheme); }
+bool isGenicamAddress(const std::string& address) { return address.starts_with(kGenicamScheme); }
 
 std::vector<CameraInfo> listGenicamCameras() {
     const std::lock_guard lock(listMutex());
@@ -295,7 +295,7 @@ std::vector<CameraInfo> listGenicamCameras() {
     const auto text = [](const char* of) { return std::string(of ? of : ""); };
     for (unsigned i = 0; i < arv_get_n_devices(); ++i) {
         const std::string serial = text(arv_get_device_serial_nbr(i));
-        cameras.push_back({std::string(kScheme) + text(arv_get_device_id(i)),
+        cameras.push_back({std::string(kGenicamScheme) + text(arv_get_device_id(i)),
                            text(arv_get_device_vendor(i)) + " " + text(arv_get_device_model(i)) +
                                (serial.empty() ? "" : ", " + serial)});
     }

@@ -31,11 +31,11 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr std::string_view kScheme = "http://";
+constexpr std::string_view kHttp = "http://";
 constexpr Microseconds kLate{400'000};
 constexpr auto kAnew = 500ms;                            ///< until it connects again
-constexpr auto kPatience = 10s;                          ///< for a picture
-constexpr auto kLook = 50ms;                             ///< between looks at whether it is still wanted
+constexpr auto kPictureWithin = 10s;                     ///< for a picture
+constexpr auto kWantedEvery = 50ms;                      ///< between looks at whether it is still wanted
 constexpr std::size_t kMostHead = std::size_t{1} << 16U; ///< bytes
 constexpr std::size_t kMostPicture = std::size_t{64} << 20U;
 constexpr int kMostBroken = 5; ///< pictures one after the other
@@ -50,7 +50,7 @@ HttpAddress parseAddress(const std::string& address) {
     };
     if (!isMjpegAddress(address)) throw bad("is no address of a network camera");
     HttpAddress parsed;
-    std::string rest = address.substr(kScheme.size());
+    std::string rest = address.substr(kHttp.size());
     if (const std::size_t slash = rest.find('/'); slash != std::string::npos) {
         parsed.path = rest.substr(slash);
         rest.resize(slash);
@@ -133,7 +133,7 @@ public:
     }
     bool send(std::string_view text) const {
         while (!text.empty()) {
-            if (!waitFor(POLLOUT, kPatience)) return false;
+            if (!waitFor(POLLOUT, kPictureWithin)) return false;
             const ssize_t sent = ::send(socket_, text.data(), text.size(), MSG_NOSIGNAL | MSG_DONTWAIT);
             if (sent <= 0) return false;
             text.remove_prefix(static_cast<std::size_t>(sent));
@@ -142,7 +142,7 @@ public:
     }
     /// Appends what has come; false at the end, or when nothing comes.
     bool receive(std::string& buffer) const {
-        if (!waitFor(POLLIN, kPatience)) return false;
+        if (!waitFor(POLLIN, kPictureWithin)) return false;
         std::array<char, 65536> bytes; // NOLINT(cppcoreguidelines-pro-type-member-init): written before it is read
         const ssize_t got = ::recv(socket_, bytes.data(), bytes.size(), MSG_DONTWAIT);
         if (got <= 0) return false;
@@ -166,9 +166,9 @@ private:
         return false;
     }
     bool waitFor(short events, std::chrono::milliseconds atMost) const {
-        for (auto waited = 0ms; waited < atMost && !unwanted_; waited += kLook) {
+        for (auto waited = 0ms; waited < atMost && !unwanted_; waited += kWantedEvery) {
             pollfd one{socket_, events, 0};
-            if (::poll(&one, 1, static_cast<int>(kLook.count())) > 0) return true;
+            if (::poll(&one, 1, static_cast<int>(kWantedEvery.count())) > 0) return true;
         }
         return false;
     }
@@ -290,8 +290,8 @@ void readForEver(const HttpAddress& address, const std::shared_ptr<Shared>& shar
             shared->why = why;
         }
         shared->came.notify_all();
-        for (auto waited = 0ms; waited < kAnew && !shared->unwanted; waited += kLook)
-            std::this_thread::sleep_for(kLook);
+        for (auto waited = 0ms; waited < kAnew && !shared->unwanted; waited += kWantedEvery)
+            std::this_thread::sleep_for(kWantedEvery);
     }
 }
 
@@ -321,7 +321,7 @@ public:
 private:
     static std::string withoutPassword(const std::string& address) {
         const std::size_t at = address.rfind('@');
-        return at == std::string::npos ? address : std::string(kScheme) + address.substr(at + 1);
+        return at == std::string::npos ? address : std::string(kHttp) + address.substr(at + 1);
     }
     [[nodiscard]] DeviceError unreadable() const {
         return {"camera " + name_, "its pictures cannot be read as JPEG", "choose MJPEG in its settings"};
@@ -339,7 +339,7 @@ private:
 
     /// The newest picture that began at this time or later, and after the one given before.
     std::string next(Microseconds from, const Progress& progress) {
-        const auto until = std::chrono::steady_clock::now() + kPatience;
+        const auto until = std::chrono::steady_clock::now() + kPictureWithin;
         std::unique_lock lock(shared_->mutex);
         while (true) {
             if (shared_->count > given_ && shared_->began >= from) {
@@ -351,7 +351,7 @@ private:
                 throw DeviceError("camera " + name_,
                                   shared_->why.empty() ? "sends no picture within 10 seconds" : shared_->why,
                                   "open the address in a browser, and see whether it shows the picture there");
-            shared_->came.wait_for(lock, kLook);
+            shared_->came.wait_for(lock, kWantedEvery);
             if (!progress.cancelled()) continue;
             lock.unlock();
             progress.throwIfCancelled();
@@ -367,7 +367,7 @@ private:
 
 } // namespace
 
-bool isMjpegAddress(const std::string& address) { return address.starts_with(kScheme); }
+bool isMjpegAddress(const std::string& address) { return address.starts_with(kHttp); }
 
 std::unique_ptr<CaptureCamera> openMjpegCamera(const std::string& address) {
     return std::make_unique<MjpegCamera>(address);
