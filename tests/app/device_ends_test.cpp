@@ -14,7 +14,8 @@
 #include <sys/resource.h>
 
 #include "tests/app/process.h"
-#include "tests/devices/board_at_port.h"
+#include "devices/simulator/board_at_port.h"
+#include "tests/devices/event_loop.h"
 #include "tests/support/long_tests.h"
 
 namespace lumorph::test {

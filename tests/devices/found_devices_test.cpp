@@ -7,7 +7,7 @@
 
 #include "devices/controllers/controller_kinds.h"
 #include "devices/transport/port_access.h"
-#include "tests/devices/pty.h"
+#include "devices/simulator/pty.h"
 
 namespace lumorph {
 namespace {

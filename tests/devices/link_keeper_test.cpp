@@ -8,7 +8,8 @@
 
 #include "core/base/error.h"
 #include "devices/transport/serial_transport.h"
-#include "tests/devices/pty.h"
+#include "devices/simulator/pty.h"
+#include "tests/devices/event_loop.h"
 
 namespace lumorph {
 namespace {

@@ -16,7 +16,8 @@
 #include <unistd.h>
 
 #include "devices/transport/port_access.h"
-#include "tests/devices/pty.h"
+#include "devices/simulator/pty.h"
+#include "tests/devices/event_loop.h"
 
 namespace lumorph {
 namespace {

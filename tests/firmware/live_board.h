@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "tests/core/temporary_folder.h"
-#include "tests/devices/pty.h"
+#include "devices/simulator/pty.h"
 #include "tests/firmware/board.h"
 
 namespace lumorph::firmware_test {

@@ -13,7 +13,8 @@
 #include "devices/transport/found_devices.h"
 #include "devices/transport/link_keeper.h"
 #include "tests/devices/hid/fake_hidapi.h"
-#include "tests/devices/pty.h"
+#include "devices/simulator/pty.h"
+#include "tests/devices/event_loop.h"
 
 namespace lumorph {
 namespace {

@@ -1,9 +1,9 @@
-#include "tests/devices/board_at_port.h"
+#include "devices/simulator/board_at_port.h"
 
 #include <algorithm>
 #include <span>
 
-namespace lumorph::test {
+namespace lumorph {
 
 namespace {
 
@@ -56,13 +56,4 @@ void BoardAtPort::takeFrames() {
     }
 }
 
-bool comesTrue(const std::function<bool()>& condition, std::chrono::milliseconds limit) {
-    const auto end = BoardAtPort::Clock::now() + limit;
-    while (!condition()) {
-        if (BoardAtPort::Clock::now() > end) return false;
-        std::this_thread::sleep_for(2ms);
-    }
-    return true;
-}
-
-} // namespace lumorph::test
+} // namespace lumorph
