@@ -9,8 +9,8 @@
 #include <thread>
 #include <vector>
 
-#include "devices/simulator/simulated_bench.h"
 #include "devices/simulator/pty.h"
+#include "devices/simulator/simulated_bench.h"
 
 namespace lumorph {
 

@@ -17,7 +17,8 @@ Pty::Pty() {
     std::array<char, 128> name{};
     termios raw{};
     ::cfmakeraw(&raw);
-    if (::openpty(&master_, &slave, name.data(), &raw, nullptr) != 0) throw DeviceError("pseudo-terminal", "the system gives none", "close programs that have many terminals open");
+    if (::openpty(&master_, &slave, name.data(), &raw, nullptr) != 0)
+        throw DeviceError("pseudo-terminal", "the system gives none", "close programs that have many terminals open");
     ::close(slave);
     ::fcntl(master_, F_SETFL, O_NONBLOCK);
     path_ = name.data();

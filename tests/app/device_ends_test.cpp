@@ -13,8 +13,8 @@
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 
-#include "tests/app/process.h"
 #include "devices/simulator/board_at_port.h"
+#include "tests/app/process.h"
 #include "tests/devices/event_loop.h"
 #include "tests/support/long_tests.h"
 

@@ -8,12 +8,12 @@
 #include "core/base/statistics.h"
 #include "core/rig/rig_file.h"
 #include "devices/controllers/servo_link.h"
+#include "devices/protocol/natnet_writer.h"
 #include "devices/simulator/simulated_bench.h"
 #include "devices/trackers/natnet_client.h"
 #include "devices/trackers/tracker_hub.h"
 #include "tests/bench/bench_groups.h"
 #include "tests/bench/bench_timing.h"
-#include "devices/protocol/natnet_writer.h"
 
 namespace lumorph::bench {
 

@@ -7,8 +7,8 @@
 #include <gtest/gtest.h>
 
 #include "core/base/error.h"
-#include "tests/support/natnet_frames.h"
 #include "devices/protocol/natnet_writer.h"
+#include "tests/support/natnet_frames.h"
 
 namespace lumorph {
 namespace {

@@ -13,8 +13,8 @@
 
 #include "core/base/error.h"
 #include "core/base/file.h"
-#include "tests/support/natnet_frames.h"
 #include "devices/protocol/natnet_writer.h"
+#include "tests/support/natnet_frames.h"
 
 namespace lumorph::natnet {
 namespace {
@@ -299,8 +299,7 @@ TEST(NatNet, ServersTellTheirClockSince30) {
     const ServerInfo older{"Motive", {1, 10, 0, 0}, {2, 10}, {}};
     const ServerInfo newer{"Motive", {3, 1, 0, 0}, {4, 1}, Connection{10'000'000, 1600, false, {1, 2, 3, 4}}};
     for (const ServerInfo& sent : {older, newer})
-        EXPECT_EQ(readServerInfo(payloadOf(NatNetWriter(sent.natnet).serverInfo(sent), Message::serverInfo)),
-                  sent);
+        EXPECT_EQ(readServerInfo(payloadOf(NatNetWriter(sent.natnet).serverInfo(sent), Message::serverInfo)), sent);
 }
 
 TEST(NatNet, AClientSaysWhatTheProtocolAsksFor) {

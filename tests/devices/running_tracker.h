@@ -18,8 +18,8 @@
 
 #include <gtest/gtest.h>
 
-#include "devices/trackers/tracker.h"
 #include "devices/protocol/natnet_writer.h"
+#include "devices/trackers/tracker.h"
 
 namespace lumorph::test {
 

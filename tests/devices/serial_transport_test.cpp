@@ -15,8 +15,8 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include "devices/transport/port_access.h"
 #include "devices/simulator/pty.h"
+#include "devices/transport/port_access.h"
 #include "tests/devices/event_loop.h"
 
 namespace lumorph {

@@ -19,13 +19,13 @@
 #include "core/scene/project.h"
 #include "core/voxels/nrrd.h"
 #include "core/voxels/solid.h"
+#include "devices/protocol/natnet_writer.h"
 #include "tests/core/scene/scenes.h"
 #include "tests/fuzz/servo_trace_seeds.h"
 #include "tests/fuzz/stage_recording_seeds.h"
 #include "tests/support/full_model.h"
 #include "tests/support/gltf_builder.h"
 #include "tests/support/natnet_frames.h"
-#include "devices/protocol/natnet_writer.h"
 #include "tests/support/small_rigs.h"
 
 namespace {
