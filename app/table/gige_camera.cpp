@@ -1,6 +1,7 @@
 #include "app/table/gige_camera.h"
 
 #include <algorithm>
+#include <cstddef>
 #include <cstdint>
 
 #include <arv.h>

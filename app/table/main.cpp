@@ -1,6 +1,8 @@
 #include <algorithm>
 #include <csignal>
+#include <cstdint>
 #include <cstdio>
+#include <exception>
 #include <iostream>
 #include <memory>
 #include <string>
@@ -73,7 +75,7 @@ int run(const Arguments& arguments) {
     order.cameraSize = sizeOf(arguments.cameraSize);
     order.board = arguments.board;
     const std::string rig = arguments.rig.empty() ? resourceFile("models/tablet.glb").string() : arguments.rig;
-    Table table(drawTruth(order, std::make_shared<const Rig>(readRig(rig))));
+    table::Table table(drawTruth(order, std::make_shared<const Rig>(readRig(rig))));
     if (!arguments.truth.empty()) writeTruth(table.truth(), arguments.truth);
 
     nlohmann::ordered_json ready;

@@ -1,13 +1,16 @@
 #include "app/table/mjpeg_server.h"
 
+#include <algorithm>
 #include <array>
 #include <chrono>
+#include <cstdint>
 #include <vector>
 
 #include <arpa/inet.h>
 #include <opencv2/imgcodecs.hpp>
 #include <poll.h>
 #include <sys/socket.h>
+#include <sys/time.h>
 #include <unistd.h>
 
 #include "core/base/error.h"
@@ -58,11 +61,15 @@ void MjpegServer::serve(const std::stop_token& stop) {
         pollfd one{socket_, POLLIN, 0};
         if (::poll(&one, 1, 50) <= 0) continue;
         const int listener = ::accept(socket_, nullptr, nullptr);
-        if (listener >= 0)
-            listeners.emplace_back([this, listener](const std::stop_token& its) {
-                send(listener, its);
-                ::close(listener);
-            });
+        if (listener < 0) continue;
+        // One that asks for nothing, or does not read, must not keep the table from ending.
+        const timeval patience{1, 0};
+        ::setsockopt(listener, SOL_SOCKET, SO_RCVTIMEO, &patience, sizeof patience);
+        ::setsockopt(listener, SOL_SOCKET, SO_SNDTIMEO, &patience, sizeof patience);
+        listeners.emplace_back([this, listener](const std::stop_token& its) {
+            send(listener, its);
+            ::close(listener);
+        });
     }
 }
 

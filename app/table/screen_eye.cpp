@@ -1,9 +1,12 @@
 #include "app/table/screen_eye.h"
 
 #include <algorithm>
+#include <chrono>
+#include <cstdint>
 #include <deque>
 #include <mutex>
 #include <thread>
+#include <utility>
 
 #include <poll.h>
 #include <sys/ipc.h>

@@ -1,6 +1,8 @@
 #include "app/table/servo_port.h"
 
 #include <algorithm>
+#include <chrono>
+#include <cmath>
 #include <deque>
 #include <utility>
 #include <vector>
@@ -17,11 +19,17 @@ namespace {
 constexpr std::chrono::milliseconds kPause{5};
 constexpr std::size_t kFaulty = 1;
 constexpr double kStop = 0.55; // of a stroke
+constexpr double kThere = 2.0; // microseconds of pulse
 
 /// The stroke that a horn's place means, by the wiring of the rig.
 double toldStroke(const ServoSetup& setup, double pulse) {
     const double share = std::clamp((pulse - setup.pulseMin) / (setup.pulseMax - setup.pulseMin), 0.0, 1.0);
     return strokeWhereTurned(setup.curve, setup.reversed ? 1.0 - share : share);
+}
+
+/// It stands where a pulse wants it.
+bool hasFollowed(const SimulatedServo& horn) {
+    return horn.pulse > 0.0 && std::abs(horn.pulse - horn.position) < kThere;
 }
 
 } // namespace
@@ -35,6 +43,9 @@ void ServoPort::follow(const std::stop_token& stop) {
     const SteadyClock clock;
     std::vector<double> real(setups.size(), 0.0);
     std::vector<std::deque<std::pair<Microseconds, double>>> told(setups.size()); // on their way, by time
+    // A new board has its horns in the middle. The device lies at rest, whatever that is, until its servo has once been
+    // where a pulse told it to be.
+    std::vector<bool> isDriven(setups.size(), false);
     while (!stop.stop_requested()) {
         const Microseconds now = clock.now();
         const std::vector<SimulatedServo> horns = board_.board()->servos();
@@ -42,6 +53,8 @@ void ServoPort::follow(const std::stop_token& stop) {
             const auto horn = static_cast<std::size_t>(std::max(0, setups[i].channel - first));
             if (horn >= horns.size()) continue;
             const MeasuredServo& servo = truth.room.servos[i];
+            if (!isDriven[i]) isDriven[i] = hasFollowed(horns[horn]);
+            if (!isDriven[i]) continue;
             double stroke = toldStroke(setups[i], horns[horn].position);
             if (i == kFaulty && fault_ == Fault::reversed) stroke = 1.0 - stroke;
             told[i].emplace_back(now, stroke);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include <glm/gtc/quaternion.hpp>
 
@@ -13,7 +14,9 @@ constexpr double kReach = 0.6; // seconds of a hand from one place to the next
 
 double secondsBetween(Microseconds from, Microseconds to) { return 1e-6 * static_cast<double>((to - from).count()); }
 
-Pose poseOf(const glm::dmat4& matrix) { return {glm::dvec3(matrix[3]), glm::quat_cast(glm::dmat3(matrix))}; }
+Pose poseOf(const glm::dmat4& matrix) {
+    return {glm::dvec3(matrix[3]), glm::normalize(glm::quat_cast(glm::dmat3(matrix)))};
+}
 
 /// Turns that differ as much as a wrist can.
 glm::dquat wristTurn(int turn) {
@@ -23,8 +26,10 @@ glm::dquat wristTurn(int turn) {
            glm::angleAxis(0.5 * std::cos(1.9 * k), glm::dvec3(0.0, 0.0, 1.0));
 }
 
-glm::dquat swingTurn(double t) {
-    const glm::dvec3 turn(0.7 * std::sin(2.1 * t), 0.9 * std::sin(0.9 * t), 0.7 * std::cos(1.7 * t));
+/// `share` of the swing, so that it begins without a jump.
+glm::dquat swingTurn(double t, double share) {
+    const glm::dvec3 turn =
+        share * glm::dvec3(0.7 * std::sin(2.1 * t), 0.9 * std::sin(0.9 * t), 0.7 * std::cos(1.7 * t));
     const double angle = glm::length(turn);
     return angle > 0.0 ? glm::angleAxis(angle, turn / angle) : glm::dquat(1.0, 0.0, 0.0, 0.0);
 }
@@ -45,7 +50,7 @@ Pose Table::along(const Way& way, Microseconds time) const {
     const double eased = share * share * (3.0 - 2.0 * share);
     Pose pose{glm::mix(way.from.position, way.to.position, eased),
               glm::slerp(way.from.rotation, way.to.rotation, eased)};
-    if (way.swings) pose.rotation = pose.rotation * swingTurn(t);
+    if (way.swings) pose.rotation = pose.rotation * swingTurn(t, eased);
     return pose;
 }
 

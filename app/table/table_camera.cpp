@@ -2,8 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
+#include <functional>
 #include <random>
+#include <thread>
 
 #include <opencv2/imgproc.hpp>
 
@@ -19,7 +20,7 @@ namespace {
 constexpr double kStill = 0.002;     // of a stroke: less is not worth new rays
 constexpr double kStillPlace = 1e-5; // metres
 constexpr double kStillTurn = 1e-5;  // of a quaternion's part
-constexpr double kInkLift = 2e-5;    // metres above the paper, towards who looks
+constexpr double kLift = 2e-5;       // metres of the paper above the table, and of the ink above the paper
 constexpr double kUnit = 1e-3;       // metres, of a board's lengths
 constexpr int kCircleCells = 40;     // of a spacing: each is all paper or all ink
 constexpr glm::vec3 kInk{0.08F};
@@ -51,7 +52,9 @@ void addCell(TriangleMesh& mesh, const glm::dmat4& worldFromBoard, const cv::Rec
 void addBoard(LabWorld& world, const CalibrationBoard& board, const glm::dmat4& worldFromBoard) {
     const BoardTexture texture(board);
     LabSurface paper{{}, kPaper}, ink{{}, kInk};
-    addCell(paper.mesh, worldFromBoard, texture.page(), 0.0);
+    // A board that lies flat is in the table's plane: rays would find now the one, now the other.
+    constexpr double kUp = BoardTexture::printedSide() * kLift;
+    addCell(paper.mesh, worldFromBoard, texture.page(), kUp);
     const bool isRound = board.kind == CalibrationBoard::Kind::circles;
     const double cell =
         board.kind == CalibrationBoard::Kind::charuco ? 0.0 : board.spacing / (isRound ? kCircleCells : 1);
@@ -76,15 +79,14 @@ void addBoard(LabWorld& world, const CalibrationBoard& board, const glm::dmat4& 
         add(ys, board.rows);
     }
     for (std::size_t j = 0; j + 1 < ys.size(); ++j) {
-        std::optional<double> begin; // of a run of ink
-        for (std::size_t i = 0; i + 1 <= xs.size(); ++i) {
+        std::size_t begin = xs.size(); // of a run of ink; that: of none
+        for (std::size_t i = 0; i < xs.size(); ++i) {
             const bool isInk = i + 1 < xs.size() && page.contains(cv::Point2d(xs[i], ys[j])) &&
                                texture.albedo(0.5 * (xs[i] + xs[i + 1]), 0.5 * (ys[j] + ys[j + 1])) < 0.5F;
-            if (isInk && !begin) begin = xs[i];
-            if (isInk || !begin) continue;
-            addCell(ink.mesh, worldFromBoard, {*begin, ys[j], xs[i] - *begin, ys[j + 1] - ys[j]},
-                    BoardTexture::printedSide() * kInkLift);
-            begin.reset();
+            if (isInk) begin = std::min(begin, i);
+            if (isInk || begin == xs.size()) continue;
+            addCell(ink.mesh, worldFromBoard, {xs[begin], ys[j], xs[i] - xs[begin], ys[j + 1] - ys[j]}, 2.0 * kUp);
+            begin = xs.size();
         }
     }
     world.surfaces.push_back(std::move(paper));
@@ -125,6 +127,7 @@ struct TableCamera::Data {
     LabSight sight;
     std::vector<std::shared_ptr<const Image>> thrown; ///< by the lab's projectors now
     double levels = 1.0;                              ///< grey of radiance 1 in the usual time
+    Microseconds working{0};                          ///< that a picture takes to be worked out
     cv::Mat1f noise, corners;
     std::mt19937 dice;
 
@@ -181,12 +184,16 @@ cv::Size TableCamera::size() const { return data_->size(); }
 
 cv::Mat1b TableCamera::photograph(double exposureSeconds, double gainDecibels) {
     Data& data = *data_;
-    const std::scoped_lock lock(data.mutex);
-    const Installation& room = data.table.truth().room;
-    const Microseconds middle = data.clock.now() - Microseconds(std::llround(0.5e6 * exposureSeconds));
+    std::unique_lock lock(data.mutex);
+    const Microseconds late(std::llround(1e6 * data.table.truth().room.predictionSeconds));
+    // The light of when it will be ready: whoever gets it takes its exposure to have ended just before it came. What
+    // the screens show then need not be known yet, as its light comes late.
+    const Microseconds begun = data.clock.now(), ready = begun + data.working;
+    const Microseconds middle = ready - Microseconds(std::llround(0.5e6 * exposureSeconds));
     const Standing now = data.table.at(middle);
-    if (!isStill(now, data.stood)) data.stand(now);
-    const Microseconds shown = middle - Microseconds(std::llround(1e6 * room.predictionSeconds));
+    const bool isAsBefore = isStill(now, data.stood);
+    if (!isAsBefore) data.stand(now);
+    const Microseconds shown = middle - late;
     for (std::size_t k = 0; k < data.thrown.size(); ++k) {
         auto picture = data.eye.at(k, shown).picture;
         if (picture == data.thrown[k]) continue;
@@ -213,6 +220,11 @@ cv::Mat1b TableCamera::photograph(double exposureSeconds, double gainDecibels) {
             to[x] =
                 cv::saturate_cast<std::uint8_t>(from[x] + dice[x] * std::sqrt(dark + shot * std::max(0.0F, from[x])));
     }
+    // The longest of late; new rays take longer, and are few.
+    const Microseconds took = data.clock.now() - begun;
+    if (isAsBefore) data.working = std::min(late, std::max(took, data.working - data.working / 16));
+    lock.unlock();
+    std::this_thread::sleep_for(ready - begun - took);
     return picture;
 }
 

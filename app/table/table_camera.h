@@ -30,7 +30,7 @@ public:
     TableCamera(const Table& table, const ScreenEye& eye, std::size_t camera, const TableCameraOptions& options = {});
     ~TableCamera();
 
-    /// 8-bit grey, linear; exposed from so many seconds before now until now. Any thread, one at a time.
+    /// 8-bit grey, linear; exposed for so many seconds until it is given back. Any thread, one at a time.
     [[nodiscard]] cv::Mat1b photograph(double exposureSeconds, double gainDecibels = 0.0);
     [[nodiscard]] cv::Size size() const;
 

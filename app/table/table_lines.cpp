@@ -4,7 +4,9 @@
 #include <charconv>
 #include <cmath>
 #include <memory>
+#include <optional>
 #include <sstream>
+#include <system_error>
 
 #include <nlohmann/json.hpp>
 #include <opencv2/imgproc.hpp>
@@ -63,7 +65,7 @@ glm::dvec3 TableLines::dot() const {
         const auto picture = parts_.eye.at(k, SteadyClock().now()).picture;
         const cv::Mat rgba(picture->size().y, picture->size().x, CV_8UC4,
                            const_cast<Image::Pixel*>(picture->pixels().data()));
-        cv::Mat grey, bright, numbers, areas, centres;
+        cv::Mat grey, bright;
         cv::cvtColor(rgba, grey, cv::COLOR_RGBA2GRAY);
         double most = 0.0;
         cv::minMaxLoc(grey, nullptr, &most);

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <optional>
+#include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -41,7 +41,8 @@ private:
     void touch(const Words& words);
     void look(const Words& words);
     void fault(const Words& words);
-    /// Where a projector's only spot of light falls on the table. Throws DataError where it shows none, or more.
+    /// Where the middle of a projector's small spot of light falls on the table: a dot, with or without a ring. Throws
+    /// InvalidInput where none shows one.
     [[nodiscard]] glm::dvec3 dot() const;
     [[nodiscard]] glm::dvec3 placeOf(const Words& words, std::size_t first) const;
 

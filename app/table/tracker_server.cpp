@@ -2,7 +2,9 @@
 
 #include <array>
 #include <chrono>
-#include <cstring>
+#include <cmath>
+#include <cstdint>
+#include <optional>
 #include <random>
 #include <span>
 #include <vector>
@@ -44,7 +46,9 @@ private:
     std::normal_distribution<double> dice_;
 };
 
-Pose poseOf(const glm::dmat4& matrix) { return {glm::dvec3(matrix[3]), glm::quat_cast(glm::dmat3(matrix))}; }
+Pose poseOf(const glm::dmat4& matrix) {
+    return {glm::dvec3(matrix[3]), glm::normalize(glm::quat_cast(glm::dmat3(matrix)))};
+}
 
 natnet::RigidBody rigidBody(std::size_t number, const std::optional<Pose>& pose) {
     natnet::RigidBody body;

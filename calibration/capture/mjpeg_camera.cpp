@@ -242,8 +242,9 @@ private:
     /// A boundary, the part's own head, and the picture.
     bool takePart() {
         while (buffer_.find("--") == std::string::npos)
-            if (!connection_.receive(buffer_)) return false;
+            if (buffer_.size() > kMostHead || !connection_.receive(buffer_)) return false;
         const Microseconds began = clock_.now();
+        buffer_.erase(0, buffer_.find("--")); // an empty line before it would end its head
         const std::optional<std::string> head = takeHead();
         if (!head) return false;
         const std::string told = headValue("\n" + *head, "content-length");
