@@ -45,6 +45,8 @@ OpenDisplay openDisplay() {
 class SharedPicture {
 public:
     SharedPicture(Display* display, const Screen& screen) : display_(display) {
+        if (XShmQueryExtension(display) == 0)
+            throw DeviceError("X display", "it shares no memory", "start on the machine of the display");
         const int number = DefaultScreen(display);
         image_ = XShmCreateImage(display, DefaultVisual(display, number),
                                  static_cast<unsigned>(DefaultDepth(display, number)), ZPixmap, nullptr, &memory_,

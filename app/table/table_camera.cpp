@@ -141,7 +141,10 @@ void TableCamera::Data::stand(const Standing& now) {
     Installation room = truth.room;
     room.worldFromDevice = glm::mat4(matrixOf(now.device));
     LabWorld world = roomWorld(room, *truth.rig, now.strokes);
-    if (now.worldFromBoard) addBoard(world, board, *now.worldFromBoard);
+    if (now.worldFromBoard) {
+        world.surfaces.front().mesh = {}; // whoever lays a board there has put the device aside
+        addBoard(world, board, *now.worldFromBoard);
+    }
     if (now.hand) world.blockers.push_back(visitorHand(glm::vec3(*now.hand), room.eye));
     double peak = 0.0;
     for (const InstalledProjector& projector : room.projectors) {

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <span>
 
+#include "core/base/error.h"
+
 namespace lumorph {
 
 namespace {
@@ -40,7 +42,11 @@ void BoardAtPort::pass() {
     for (std::vector<std::uint8_t> said = board_->give(bench_.now()); !said.empty();
          said = board_->give(bench_.now())) {
         if (board_->isHid()) said.resize(std::min(frameBytes(said), said.size()));
-        port_.send(said);
+        try {
+            port_.send(said);
+        } catch (const DeviceError&) {
+            break; // nobody reads it
+        }
     }
     if (driven() > 0) lastDriven_ = Clock::now();
 }
