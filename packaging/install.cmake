@@ -24,6 +24,7 @@ install(FILES packaging/desktop/copyright DESTINATION ${CMAKE_INSTALL_DOCDIR})
 install(FILES packaging/udev/60-lumorph.rules DESTINATION lib/udev/rules.d)
 
 if(TARGET lumorph-studio)
+    install(TARGETS lumorph-table RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
     install(TARGETS lumorph-studio RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
     install(FILES packaging/desktop/io.lumorph.Studio.desktop DESTINATION ${CMAKE_INSTALL_DATADIR}/applications)
     install(FILES packaging/desktop/io.lumorph.Studio.metainfo.xml DESTINATION ${CMAKE_INSTALL_DATADIR}/metainfo)

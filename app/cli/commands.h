@@ -38,6 +38,7 @@ void addCalibrateImport(CLI::App& group);
 void addCalibrateStages(CLI::App& group, Session& session);
 void addCalibrateTracking(CLI::App& group, Session& session);
 void addLabCommands(CLI::App& app, Session& session);
+void addCamerasCommand(CLI::App& app);
 /// Into the group of the lab.
 void addPlacementCommand(CLI::App& group, Session& session);
 void addLabRegisterCommand(CLI::App& group, Session& session);

@@ -54,6 +54,7 @@ int main(int argc, char** argv) {
     lumorph::cli::addRenderCommand(app, session);
     lumorph::cli::addCalibrateCommands(app, session);
     lumorph::cli::addLabCommands(app, session);
+    lumorph::cli::addCamerasCommand(app);
 #endif
 #ifdef LUMORPH_WITH_DEVICES
     lumorph::cli::addDeviceCommands(app, session);

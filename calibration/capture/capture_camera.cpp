@@ -8,6 +8,8 @@
 #include <opencv2/videoio.hpp>
 
 #include "calibration/capture/camera_controls.h"
+#include "calibration/capture/genicam_camera.h"
+#include "calibration/capture/mjpeg_camera.h"
 #include "calibration/lab/board_lab.h"
 #include "calibration/tracking/camera_source.h"
 #include "core/base/clock.h"
@@ -135,6 +137,8 @@ private:
 } // namespace
 
 std::unique_ptr<CaptureCamera> openCaptureCamera(const std::string& path, cv::Size most) {
+    if (isMjpegAddress(path)) return openMjpegCamera(path);
+    if (isGenicamAddress(path)) return openGenicamCamera(path);
     return std::make_unique<DriverCamera>(path, most);
 }
 

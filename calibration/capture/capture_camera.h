@@ -43,8 +43,9 @@ public:
 [[nodiscard]] cv::Mat greyOf(const cv::Mat& picture);
 
 /// A camera of this machine, "/dev/video0", in the largest size that is at most `most` (empty: what it gives by
-/// itself). Exposure, white balance, focus and gain are fixed where they are, as far as the driver allows. Throws
-/// DeviceError with what to do.
+/// itself), an industrial one, "genicam://Basler-21438501", or one that sends MJPEG, "http://192.168.0.7:8080/video".
+/// Exposure, white balance, focus and gain are fixed where they are, as far as the driver allows. Throws DeviceError
+/// with what to do.
 [[nodiscard]] std::unique_ptr<CaptureCamera> openCaptureCamera(const std::string& path, cv::Size most = {1920, 1080});
 
 /// How cameras are opened, by their addresses; in any thread.

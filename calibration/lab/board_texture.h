@@ -20,6 +20,8 @@ public:
     [[nodiscard]] const cv::Rect2d& points() const noexcept { return points_; }
     /// -1: the printed side looks to the frame's -z, since y runs down the page.
     [[nodiscard]] static constexpr int printedSide() noexcept { return -1; }
+    /// Of a ChArUco marker, along a side, with its border.
+    [[nodiscard]] int markerCells() const noexcept { return markerCells_; }
     /// Diffuse albedo at a place on the page.
     [[nodiscard]] float albedo(double x, double y) const noexcept;
 

@@ -13,8 +13,9 @@
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 
+#include "devices/simulator/board_at_port.h"
 #include "tests/app/process.h"
-#include "tests/devices/board_at_port.h"
+#include "tests/devices/event_loop.h"
 #include "tests/support/long_tests.h"
 
 namespace lumorph::test {

@@ -8,8 +8,9 @@
 
 #include <gtest/gtest.h>
 
+#include "devices/simulator/board_at_port.h"
 #include "tests/app/process.h"
-#include "tests/devices/board_at_port.h"
+#include "tests/devices/event_loop.h"
 
 namespace lumorph::test {
 namespace {

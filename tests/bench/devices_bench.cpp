@@ -8,12 +8,12 @@
 #include "core/base/statistics.h"
 #include "core/rig/rig_file.h"
 #include "devices/controllers/servo_link.h"
+#include "devices/protocol/natnet_writer.h"
 #include "devices/simulator/simulated_bench.h"
 #include "devices/trackers/natnet_client.h"
 #include "devices/trackers/tracker_hub.h"
 #include "tests/bench/bench_groups.h"
 #include "tests/bench/bench_timing.h"
-#include "tests/support/natnet_writer.h"
 
 namespace lumorph::bench {
 
@@ -36,7 +36,7 @@ natnet::Frame frameAt(int number) {
 // Ten seconds of a motion capture system's packets, from the bytes to poses on the board.
 void benchTracking(Report& report) {
     const natnet::Version version{3, 1};
-    test::NatNetWriter writer(version);
+    NatNetWriter writer(version);
     std::vector<natnet::Model> models;
     RoleMap roles;
     for (int id = 1; id <= kBodies; ++id) {

@@ -13,7 +13,7 @@
 #include "devices/transport/bluetooth_search.h"
 #include "devices/transport/bluetooth_transport.h"
 #include "devices/transport/bluetooth_trouble.h"
-#include "tests/devices/pty.h"
+#include "tests/devices/event_loop.h"
 
 namespace lumorph {
 namespace {

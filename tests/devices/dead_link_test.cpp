@@ -16,9 +16,10 @@
 #include <unistd.h>
 
 #include "devices/controllers/servo_link.h"
+#include "devices/simulator/pty.h"
 #include "devices/simulator/simulated_bench.h"
 #include "tests/core/temporary_folder.h"
-#include "tests/devices/pty.h"
+#include "tests/devices/event_loop.h"
 
 namespace lumorph {
 namespace {

@@ -6,8 +6,8 @@
 #include <unistd.h>
 
 #include "devices/controllers/controller_kinds.h"
+#include "devices/simulator/pty.h"
 #include "devices/transport/port_access.h"
-#include "tests/devices/pty.h"
 
 namespace lumorph {
 namespace {

@@ -12,7 +12,7 @@
 #include <termios.h>
 #include <unistd.h>
 
-#include "tests/devices/pty.h"
+#include "devices/simulator/pty.h"
 
 namespace lumorph {
 namespace {

@@ -7,8 +7,9 @@
 #include <unistd.h>
 
 #include "core/base/error.h"
+#include "devices/simulator/pty.h"
 #include "devices/transport/serial_transport.h"
-#include "tests/devices/pty.h"
+#include "tests/devices/event_loop.h"
 
 namespace lumorph {
 namespace {

@@ -7,8 +7,8 @@
 #include <gtest/gtest.h>
 
 #include "core/base/error.h"
+#include "devices/protocol/natnet_writer.h"
 #include "tests/support/natnet_frames.h"
-#include "tests/support/natnet_writer.h"
 
 namespace lumorph {
 namespace {
@@ -74,7 +74,7 @@ private:
         std::vector<std::byte> bytes;
     };
     Version version_;
-    test::NatNetWriter writer_;
+    NatNetWriter writer_;
     std::vector<Said> said_;
 
 public:
@@ -203,7 +203,7 @@ TEST(NatNetClient, TimesThatCannotBeAreNotBelieved) {
 TEST(NatNetClient, AnswersThatNobodyAskedForDoNotSetTheClock) {
     Conversation talk({3, 1});
     talk.introduce(10.0);
-    test::NatNetWriter writer({3, 1});
+    NatNetWriter writer({3, 1});
     (void)talk.client.take(writer.echo(10'000'000, 1'000 * kHertz), at(10.0));
     natnet::Frame frame = talk.frameOf({{7}});
     frame.ticks->exposure = 1'000 * kHertz;
@@ -253,7 +253,7 @@ TEST(NatNetClient, WrongPacketsChangeNothing) {
     talk.introduce(0.1);
     talk.name({{7, "glasses"}}, 0.2);
     talk.frame(talk.frameOf({{7}}), 0.3);
-    std::vector<std::byte> wrong = test::NatNetWriter({2, 10}).frame(talk.frameOf({{8}}));
+    std::vector<std::byte> wrong = NatNetWriter({2, 10}).frame(talk.frameOf({{8}}));
     wrong.resize(wrong.size() - 1);
     EXPECT_THROW((void)talk.client.take(wrong, at(0.4)), DataError);
     EXPECT_EQ(talk.client.frame().bodies.at(0).name, "glasses");

@@ -13,8 +13,8 @@
 
 #include "core/base/error.h"
 #include "core/base/file.h"
+#include "devices/protocol/natnet_writer.h"
 #include "tests/support/natnet_frames.h"
-#include "tests/support/natnet_writer.h"
 
 namespace lumorph::natnet {
 namespace {
@@ -64,7 +64,7 @@ void readAny(std::span<const std::byte> datagram, Version version, FrameReader& 
 
 /// Every kind of packet of a version.
 std::vector<Datagram> packetsOf(Version version) {
-    test::NatNetWriter writer(version);
+    NatNetWriter writer(version);
     test::RandomFrames frames(7);
     ServerInfo info{"Motive", {2, 1, 0, 0}, version, {}};
     if (version.major >= 3) info.connection = Connection{10'000'000, 1511, true, {239, 255, 42, 99}};
@@ -202,7 +202,7 @@ TEST_F(RealNatNetPackets, FramesOfTheEarlierVersionsHoldTheirBody) {
 TEST(NatNet, FramesOfEveryVersionComeBackAsTheyWereSent) {
     for (const Version version : test::kNatNetVersions) {
         SCOPED_TRACE(std::to_string(version.major) + "." + std::to_string(version.minor));
-        test::NatNetWriter writer(version);
+        NatNetWriter writer(version);
         test::RandomFrames frames(static_cast<std::uint64_t>(version.major * 100 + version.minor));
         FrameReader reader; // one for all: nothing of a frame may stay for the next
         for (int i = 0; i < 200; ++i) {
@@ -216,13 +216,13 @@ TEST(NatNet, FramesOfEveryVersionComeBackAsTheyWereSent) {
 
 TEST(NatNet, BothEndsOfFramesThatSourcesDisagreeOnAreTaken) {
     for (const bool precise : {false, true}) {
-        test::NatNetWriter writer({4, 1});
+        NatNetWriter writer({4, 1});
         writer.preciseTime = precise;
         const Frame sent = test::RandomFrames(3).frame({4, 1});
         EXPECT_EQ(frameOf(writer.frame(sent), {4, 1}), sent) << precise;
     }
     for (const Version version : {Version{2, 5}, Version{2, 6}}) {
-        test::NatNetWriter writer(version);
+        NatNetWriter writer(version);
         writer.earlyTime = true;
         Frame sent = test::RandomFrames(4).frame(version);
         sent.timestamp = 12.5;
@@ -235,7 +235,7 @@ TEST(NatNet, OtherFlagsOfABodyDoNotTellWhetherItIsTracked) {
     for (const Version version : test::kNatNetVersions) {
         if (version < Version{2, 6}) continue;
         for (const int others : {0, 2, 4, 6, 0x100, 0x7ffe, -2}) {
-            test::NatNetWriter writer(version);
+            NatNetWriter writer(version);
             writer.bodyParams = static_cast<std::int16_t>(others);
             Frame sent = test::RandomFrames(9).frame(version);
             sent.bodies.resize(2);
@@ -251,7 +251,7 @@ TEST(NatNet, OtherFlagsOfABodyDoNotTellWhetherItIsTracked) {
 
 TEST(NatNet, FlagsOfAFrameAreReadBitByBit) {
     const Version version{3, 1};
-    test::NatNetWriter writer(version);
+    NatNetWriter writer(version);
     for (const auto& [params, changed] :
          {std::pair{0, false}, {1, false}, {2, true}, {3, true}, {4, false}, {-3, false}}) {
         Frame sent = test::RandomFrames(2).frame(version);
@@ -263,7 +263,7 @@ TEST(NatNet, FlagsOfAFrameAreReadBitByBit) {
 // The time by the network's clock came with 4.1: the same eight bytes in an older frame are a broken frame.
 TEST(NatNet, PreciseTimeIsOfVersion41Alone) {
     for (const Version version : test::kNatNetVersions) {
-        test::NatNetWriter writer(version);
+        NatNetWriter writer(version);
         writer.preciseTime = false;
         Datagram longer = writer.frame(test::RandomFrames(6).frame(version));
         const std::ptrdiff_t end = version >= Version{2, 6} ? 6 : 4; // flags and the end's mark
@@ -280,18 +280,18 @@ TEST(NatNet, PreciseTimeIsOfVersion41Alone) {
 TEST(NatNet, ModelsOfEveryVersionComeBackAsTheyWereSent) {
     for (const Version version : test::kNatNetVersions) {
         const std::vector<Model> sent = test::allModels(version);
-        EXPECT_EQ(readModels(payloadOf(test::NatNetWriter(version).models(sent), Message::models), version), sent)
+        EXPECT_EQ(readModels(payloadOf(NatNetWriter(version).models(sent), Message::models), version), sent)
             << version.major << "." << version.minor;
     }
 }
 
 TEST(NatNet, UnknownKindsAreLeftOutWhereTheirSizeIsTold) {
     const Model body = test::allModels({4, 1})[1];
-    test::NatNetWriter writer({4, 1});
+    NatNetWriter writer({4, 1});
     writer.moreBytes = 16; // what newer versions say in addition
     const Datagram datagram = writer.modelsWithUnknown(body);
     EXPECT_EQ(readModels(payloadOf(datagram, Message::models), {4, 1}), std::vector<Model>{body});
-    const Datagram older = test::NatNetWriter({4, 0}).modelsWithUnknown(body);
+    const Datagram older = NatNetWriter({4, 0}).modelsWithUnknown(body);
     EXPECT_THROW((void)readModels(payloadOf(older, Message::models), {4, 0}), DataError);
 }
 
@@ -299,8 +299,7 @@ TEST(NatNet, ServersTellTheirClockSince30) {
     const ServerInfo older{"Motive", {1, 10, 0, 0}, {2, 10}, {}};
     const ServerInfo newer{"Motive", {3, 1, 0, 0}, {4, 1}, Connection{10'000'000, 1600, false, {1, 2, 3, 4}}};
     for (const ServerInfo& sent : {older, newer})
-        EXPECT_EQ(readServerInfo(payloadOf(test::NatNetWriter(sent.natnet).serverInfo(sent), Message::serverInfo)),
-                  sent);
+        EXPECT_EQ(readServerInfo(payloadOf(NatNetWriter(sent.natnet).serverInfo(sent), Message::serverInfo)), sent);
 }
 
 TEST(NatNet, AClientSaysWhatTheProtocolAsksFor) {
@@ -359,7 +358,7 @@ TEST(NatNet, BytesThatTurnedOverDoNoHarm) {
 
 TEST(NatNet, AFrameThatIsRefusedLeavesTheOneBefore) {
     const Version version{3, 1};
-    test::NatNetWriter writer(version);
+    NatNetWriter writer(version);
     test::RandomFrames frames(5);
     const Frame sent = frames.frame(version);
     const Datagram good = writer.frame(sent);
@@ -382,7 +381,7 @@ TEST(NatNet, CountsThatCannotBeAreRefusedBeforeMemoryIsAskedFor) {
 
 TEST(NatNet, VersionsBefore25AreRefused) {
     FrameReader reader;
-    const Datagram datagram = test::NatNetWriter({2, 5}).frame(test::RandomFrames(1).frame({2, 5}));
+    const Datagram datagram = NatNetWriter({2, 5}).frame(test::RandomFrames(1).frame({2, 5}));
     EXPECT_THROW((void)reader.read(payloadOf(datagram, Message::frame), {2, 0}), DataError);
 }
 

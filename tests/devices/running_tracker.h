@@ -18,8 +18,8 @@
 
 #include <gtest/gtest.h>
 
+#include "devices/protocol/natnet_writer.h"
 #include "devices/trackers/tracker.h"
-#include "tests/support/natnet_writer.h"
 
 namespace lumorph::test {
 

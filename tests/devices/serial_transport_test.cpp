@@ -15,8 +15,9 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "devices/simulator/pty.h"
 #include "devices/transport/port_access.h"
-#include "tests/devices/pty.h"
+#include "tests/devices/event_loop.h"
 
 namespace lumorph {
 namespace {

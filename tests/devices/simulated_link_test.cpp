@@ -6,7 +6,7 @@
 #include "devices/transport/discovery.h"
 #include "devices/transport/link_keeper.h"
 #include "devices/transport/transport.h"
-#include "tests/devices/pty.h"
+#include "tests/devices/event_loop.h"
 
 namespace lumorph {
 namespace {

@@ -11,7 +11,7 @@
 
 #include "core/base/error.h"
 #include "devices/simulator/simulated_bench.h"
-#include "tests/devices/pty.h"
+#include "tests/devices/event_loop.h"
 
 namespace lumorph {
 namespace {

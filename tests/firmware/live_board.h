@@ -7,8 +7,8 @@
 #include <thread>
 #include <vector>
 
+#include "devices/simulator/pty.h"
 #include "tests/core/temporary_folder.h"
-#include "tests/devices/pty.h"
 #include "tests/firmware/board.h"
 
 namespace lumorph::firmware_test {

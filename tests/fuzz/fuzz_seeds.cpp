@@ -19,13 +19,13 @@
 #include "core/scene/project.h"
 #include "core/voxels/nrrd.h"
 #include "core/voxels/solid.h"
+#include "devices/protocol/natnet_writer.h"
 #include "tests/core/scene/scenes.h"
 #include "tests/fuzz/servo_trace_seeds.h"
 #include "tests/fuzz/stage_recording_seeds.h"
 #include "tests/support/full_model.h"
 #include "tests/support/gltf_builder.h"
 #include "tests/support/natnet_frames.h"
-#include "tests/support/natnet_writer.h"
 #include "tests/support/small_rigs.h"
 
 namespace {
@@ -73,7 +73,7 @@ template <typename Write> void writeNatNet(Write write) {
     constexpr std::size_t kVersions = test::kNatNetVersions.size();
     for (std::size_t i = 0; i < kVersions; ++i) {
         const natnet::Version version = test::kNatNetVersions[i];
-        test::NatNetWriter writer(version);
+        NatNetWriter writer(version);
         test::RandomFrames frames(i);
         natnet::ServerInfo info{"Motive", {2, 1, 0, 0}, version, {}};
         if (version.major >= 3) info.connection.emplace();

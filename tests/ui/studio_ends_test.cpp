@@ -23,7 +23,7 @@
 #include <QSocketNotifier>
 #include <gtest/gtest.h>
 
-#include "tests/devices/board_at_port.h"
+#include "devices/simulator/board_at_port.h"
 #include "tests/support/long_tests.h"
 #include "tests/ui/studio_window.h"
 

@@ -6,11 +6,14 @@
 
 #include <QAbstractItemView>
 #include <QHBoxLayout>
+#include <QPointer>
 #include <QSignalBlocker>
 #include <QVBoxLayout>
 
 #include "app/studio/widgets/panel.h"
 #include "app/workspaces/calibrate/calibrate_commands.h"
+#include "calibration/capture/genicam_camera.h"
+#include "calibration/capture/mjpeg_camera.h"
 #include "calibration/lab/lab_capture.h"
 
 namespace lumorph::studio {
@@ -115,6 +118,25 @@ void SetupForm::addSource(QVBoxLayout& column) {
         edit([this](CalibrationSetup& setup) { setup.camera = camera_->currentData().toString().toStdString(); });
     });
     column.addWidget(cameraRow_);
+    address_ = new QLineEdit(this);
+    address_->setObjectName("calibrate.camera.address");
+    address_->setAccessibleName("Address of a camera");
+    address_->setPlaceholderText("http://192.168.0.7:8080/video");
+    address_->setToolTip(
+        "A telephone or network camera that sends MJPEG over HTTP, with user:password@ before its host "
+        "where it asks for that");
+    connect(address_, &QLineEdit::editingFinished, this, [this] {
+        const std::string address = address_->text().trimmed().toStdString();
+        if (address.empty() || address == parts_.service.state().setup.camera) return;
+        edit([&](CalibrationSetup& setup) { setup.camera = address; });
+    });
+    addressRow_ = makeRow("or its add&ress", address_, this);
+    column.addWidget(addressRow_);
+    search_ = new QPushButton("Search the network", this);
+    search_->setObjectName("calibrate.camera.search");
+    search_->setToolTip("For industrial cameras: GigE Vision in this machine's networks, USB3 Vision");
+    connect(search_, &QPushButton::clicked, this, [this] { searchCameras(); });
+    column.addWidget(search_);
     saved_ = new QPushButton(this);
     saved_->setObjectName("calibrate.saved.folder");
     saved_->setAccessibleName("Folder in which poses are saved");
@@ -273,17 +295,36 @@ void SetupForm::listPatterns() {
 void SetupForm::listCameras() {
     const QSignalBlocker quiet(camera_);
     const QString chosen = QString::fromStdString(parts_.service.state().setup.camera);
-    QStringList found;
-    for (int i = 0; i < 32; ++i) {
-        std::error_code none;
-        const QString path = QString("/dev/video%1").arg(i);
-        if (std::filesystem::exists(path.toStdString(), none)) found << path;
-    }
-    if (!chosen.isEmpty() && !found.contains(chosen)) found << chosen;
     camera_->clear();
-    camera_->addItem(found.isEmpty() ? "No camera is connected" : "Choose a camera", QString());
-    for (const QString& path : found) camera_->addItem(path, path);
+    std::vector<CameraInfo> found = lumorph::listCameras();
+    found.insert(found.end(), networkCameras_.begin(), networkCameras_.end());
+    const bool isListed =
+        std::ranges::any_of(found, [&](const CameraInfo& info) { return QString::fromStdString(info.path) == chosen; });
+    if (!chosen.isEmpty() && !isListed) found.push_back({chosen.toStdString(), {}});
+    camera_->addItem(found.empty() ? "No camera is connected" : "Choose a camera", QString());
+    for (const CameraInfo& info : found) {
+        const QString path = QString::fromStdString(info.path);
+        camera_->addItem(info.name.empty() ? path : QString::fromStdString(info.name), path);
+        camera_->setItemData(camera_->count() - 1, path, Qt::ToolTipRole);
+    }
     camera_->setCurrentIndex(std::max(0, camera_->findData(chosen)));
+    if (!address_->hasFocus()) address_->setText(isMjpegAddress(chosen.toStdString()) ? chosen : QString());
+}
+
+void SetupForm::searchCameras() {
+    search_->setEnabled(false);
+    parts_.studio.jobs.run<std::vector<CameraInfo>>(
+        "calibrate", "Looking for cameras", [](const Progress&) { return listGenicamCameras(); },
+        [form = QPointer(this)](const std::vector<CameraInfo>& found) {
+            if (!form) return;
+            form->networkCameras_ = found;
+            form->search_->setEnabled(true);
+            form->search_->setText(found.empty() ? "No industrial camera answers; search again" : "Search again");
+            form->listCameras();
+        },
+        [form = QPointer(this)](const std::exception&) {
+            if (form) form->search_->setEnabled(true);
+        });
 }
 
 void SetupForm::refresh() {
@@ -303,7 +344,8 @@ void SetupForm::refresh() {
     folder_->setVisible(folder);
     folder_->setText(setup.folder.empty() ? "Choose a folder..."
                                           : QString::fromStdString(setup.folder.filename().string()));
-    cameraRow_->setVisible(setup.way == CaptureWay::camera);
+    for (QWidget* part : {cameraRow_, addressRow_, static_cast<QWidget*>(search_)})
+        part->setVisible(setup.way == CaptureWay::camera);
     if (setup.way == CaptureWay::camera && !camera_->view()->isVisible()) listCameras();
     savedRow_->setVisible(isLive(setup.way));
     saved_->setText(QString::fromStdString(setup.saved.filename().string()));

@@ -3,6 +3,7 @@
 #include <QCheckBox>
 #include <QComboBox>
 #include <QLabel>
+#include <QLineEdit>
 #include <QPushButton>
 #include <QWidget>
 
@@ -10,6 +11,7 @@
 #include "app/studio/widgets/value_field.h"
 #include "app/workspaces/calibrate/board_drawing.h"
 #include "app/workspaces/calibrate/calibrate_docks.h"
+#include "calibration/tracking/camera_source.h"
 
 class QVBoxLayout;
 
@@ -29,6 +31,7 @@ private:
     void listProjectors();
     void listPatterns();
     void listCameras();
+    void searchCameras();
     void refresh();
     void edit(const std::function<void(CalibrationSetup&)>& change);
 
@@ -41,6 +44,10 @@ private:
     QPushButton* folder_ = nullptr;
     QWidget* cameraRow_ = nullptr;
     QComboBox* camera_ = nullptr;
+    QWidget* addressRow_ = nullptr;
+    QLineEdit* address_ = nullptr;
+    QPushButton* search_ = nullptr;
+    std::vector<CameraInfo> networkCameras_; ///< that were found
     QWidget* savedRow_ = nullptr;
     QPushButton* saved_ = nullptr;
     QWidget* faultRow_ = nullptr;

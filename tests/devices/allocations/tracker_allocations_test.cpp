@@ -8,10 +8,10 @@
 #include <gtest/gtest.h>
 
 #include "devices/protocol/natnet.h"
+#include "devices/protocol/natnet_writer.h"
 #include "devices/trackers/natnet_client.h"
 #include "devices/trackers/tracker_hub.h"
 #include "tests/support/natnet_frames.h"
-#include "tests/support/natnet_writer.h"
 
 namespace {
 
@@ -43,8 +43,7 @@ TEST(TrackerAllocations, TheCounterCounts) {
 
 TEST(TrackerAllocations, FramesAreReadIntoTheSameMemory) {
     for (const natnet::Version version : test::kNatNetVersions) {
-        const std::vector<std::byte> datagram =
-            test::NatNetWriter(version).frame(test::RandomFrames(11).frame(version));
+        const std::vector<std::byte> datagram = NatNetWriter(version).frame(test::RandomFrames(11).frame(version));
         natnet::FrameReader reader;
         for (int i = 0; i < 2; ++i) (void)reader.read(natnet::readPacket(datagram).payload, version);
         const long before = allocations;
@@ -55,7 +54,7 @@ TEST(TrackerAllocations, FramesAreReadIntoTheSameMemory) {
 
 TEST(TrackerAllocations, PosesComeToTheBoardWithoutAny) {
     const natnet::Version version{3, 1};
-    test::NatNetWriter writer(version);
+    NatNetWriter writer(version);
     natnet::Frame frame;
     frame.timestamp = 1.0;
     frame.ticks.emplace();

@@ -10,10 +10,11 @@
 #include <unistd.h>
 
 #include "core/base/error.h"
+#include "devices/simulator/pty.h"
 #include "devices/transport/found_devices.h"
 #include "devices/transport/link_keeper.h"
+#include "tests/devices/event_loop.h"
 #include "tests/devices/hid/fake_hidapi.h"
-#include "tests/devices/pty.h"
 
 namespace lumorph {
 namespace {

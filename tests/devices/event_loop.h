@@ -3,31 +3,10 @@
 #include <chrono>
 #include <functional>
 #include <memory>
-#include <string>
-#include <vector>
 
 #include <QCoreApplication>
 
 namespace lumorph {
-
-/// A pseudo-terminal whose far end is in the test's hand.
-class Pty {
-public:
-    Pty();
-    ~Pty() { unplug(); }
-    Pty(const Pty&) = delete;
-    Pty& operator=(const Pty&) = delete;
-
-    [[nodiscard]] const std::string& path() const { return path_; }
-    void unplug(); ///< the far end is gone
-    void send(const std::vector<std::uint8_t>& bytes) const;
-    [[nodiscard]] std::vector<std::uint8_t> receive() const; ///< what is there; does not wait
-    void waitForBytes(std::chrono::milliseconds atMost) const;
-
-private:
-    int master_ = -1;
-    std::string path_;
-};
 
 /// The program that a Qt event loop needs, where there is none yet.
 class EventLoop {
@@ -43,5 +22,8 @@ private:
     char* names_[2] = {name_, nullptr};
     std::unique_ptr<QCoreApplication> application_;
 };
+
+/// Waits for it, without an event loop; false where it did not come within the limit.
+[[nodiscard]] bool comesTrue(const std::function<bool()>& condition, std::chrono::milliseconds limit);
 
 } // namespace lumorph

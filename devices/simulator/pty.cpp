@@ -1,14 +1,14 @@
-#include "tests/devices/pty.h"
+#include "devices/simulator/pty.h"
 
 #include <array>
-#include <stdexcept>
 
-#include <QEventLoop>
 #include <fcntl.h>
 #include <poll.h>
 #include <pty.h>
 #include <termios.h>
 #include <unistd.h>
+
+#include "core/base/error.h"
 
 namespace lumorph {
 
@@ -17,7 +17,8 @@ Pty::Pty() {
     std::array<char, 128> name{};
     termios raw{};
     ::cfmakeraw(&raw);
-    if (::openpty(&master_, &slave, name.data(), &raw, nullptr) != 0) throw std::runtime_error("no pseudo-terminal");
+    if (::openpty(&master_, &slave, name.data(), &raw, nullptr) != 0)
+        throw DeviceError("pseudo-terminal", "the system gives none", "close programs that have many terminals open");
     ::close(slave);
     ::fcntl(master_, F_SETFL, O_NONBLOCK);
     path_ = name.data();
@@ -30,7 +31,7 @@ void Pty::unplug() {
 
 void Pty::send(const std::vector<std::uint8_t>& bytes) const {
     if (::write(master_, bytes.data(), bytes.size()) != static_cast<ssize_t>(bytes.size()))
-        throw std::runtime_error("the pseudo-terminal is full");
+        throw DeviceError("pseudo-terminal " + path_, "it is full", "see that whoever opened it reads");
 }
 
 std::vector<std::uint8_t> Pty::receive() const {
@@ -46,25 +47,6 @@ void Pty::waitForBytes(std::chrono::milliseconds atMost) const {
     // A terminal that nobody has open is always ready, and has nothing to say.
     if (::poll(&bytes, 1, static_cast<int>(atMost.count())) > 0 && (bytes.revents & POLLIN) == 0)
         ::usleep(static_cast<useconds_t>(1000 * atMost.count()));
-}
-
-EventLoop::EventLoop() {
-    if (!QCoreApplication::instance()) application_ = std::make_unique<QCoreApplication>(count_, names_);
-}
-
-bool EventLoop::runUntil(const std::function<bool()>& isDone, std::chrono::milliseconds limit) {
-    const auto end = std::chrono::steady_clock::now() + limit;
-    QEventLoop loop;
-    while (!isDone()) {
-        if (std::chrono::steady_clock::now() > end) return false;
-        ::usleep(1000);
-        loop.processEvents();
-    }
-    return true;
-}
-
-void EventLoop::runFor(std::chrono::milliseconds time) {
-    (void)runUntil([] { return false; }, time);
 }
 
 } // namespace lumorph

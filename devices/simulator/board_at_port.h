@@ -4,16 +4,15 @@
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
-#include <functional>
 #include <memory>
 #include <string>
 #include <thread>
 #include <vector>
 
+#include "devices/simulator/pty.h"
 #include "devices/simulator/simulated_bench.h"
-#include "tests/devices/pty.h"
 
-namespace lumorph::test {
+namespace lumorph {
 
 /// A simulated board at the far end of a pseudo-terminal, for programs that know nothing of it. What its servos do is
 /// the board's own word.
@@ -43,7 +42,4 @@ private:
     std::jthread pump_;
 };
 
-/// Waits for it; false where it did not come within the limit.
-[[nodiscard]] bool comesTrue(const std::function<bool()>& condition, std::chrono::milliseconds limit);
-
-} // namespace lumorph::test
+} // namespace lumorph

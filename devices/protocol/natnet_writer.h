@@ -11,9 +11,10 @@
 
 #include "devices/protocol/natnet.h"
 
-namespace lumorph::test {
+namespace lumorph {
 
-/// Writes what a NatNet server says, from the description of the bytes alone; knows nothing of how they are read.
+/// Writes what a NatNet server says, for tests and rehearsals: from the description of the bytes alone, so that it can
+/// judge the readers.
 class NatNetWriter {
 public:
     explicit NatNetWriter(natnet::Version version) : version_(version) {}
@@ -273,4 +274,4 @@ private:
     std::vector<std::byte> out_;
 };
 
-} // namespace lumorph::test
+} // namespace lumorph

@@ -1,0 +1,74 @@
+#include "app/table/gige_camera.h"
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+
+#include <arv.h>
+#include <opencv2/imgproc.hpp>
+
+#include "core/base/error.h"
+
+namespace lumorph::table {
+
+namespace {
+
+/// A picture can be worked out so often on one core.
+constexpr std::uint32_t kFramePeriod = 100'000; // us
+
+} // namespace
+
+struct GigeCamera::Data {
+    TableCamera& camera;
+    std::string host, serial;
+    ArvGvFakeCamera* network = nullptr;
+
+    /// In the camera's own thread.
+    static void fill(ArvBuffer* buffer, void* self, guint32 exposure, guint32 gain, ArvPixelFormat /*format*/) {
+        std::size_t bytes = 0; // of the image: the buffer's own data has no length yet
+        auto* to = static_cast<std::uint8_t*>(const_cast<void*>(arv_buffer_get_image_data(buffer, &bytes)));
+        const int width = arv_buffer_get_image_width(buffer), height = arv_buffer_get_image_height(buffer);
+        cv::Mat1b picture = static_cast<Data*>(self)->camera.photograph(1e-6 * exposure, gain);
+        if (picture.cols != width || picture.rows != height) // the client has cut a part out
+            picture = picture(cv::Rect(0, 0, std::min(width, picture.cols), std::min(height, picture.rows)));
+        std::fill_n(to, bytes, std::uint8_t{0});
+        for (int y = 0; y < picture.rows && static_cast<std::size_t>((y + 1) * width) <= bytes; ++y)
+            std::copy_n(picture[y], picture.cols, to + y * width);
+    }
+    void plug() {
+        network = arv_gv_fake_camera_new(host.c_str(), serial.c_str());
+        if (!arv_gv_fake_camera_is_running(network)) {
+            unplug();
+            throw DeviceError("camera at " + host, "the address is taken", "end the program that has it");
+        }
+        ArvFakeCamera* sensor = arv_gv_fake_camera_get_fake_camera(network);
+        const auto width = static_cast<guint32>(camera.size().width),
+                   height = static_cast<guint32>(camera.size().height);
+        arv_fake_camera_write_register(sensor, ARV_FAKE_CAMERA_REGISTER_SENSOR_WIDTH, width);
+        arv_fake_camera_write_register(sensor, ARV_FAKE_CAMERA_REGISTER_SENSOR_HEIGHT, height);
+        arv_fake_camera_write_register(sensor, ARV_FAKE_CAMERA_REGISTER_WIDTH, width);
+        arv_fake_camera_write_register(sensor, ARV_FAKE_CAMERA_REGISTER_HEIGHT, height);
+        arv_fake_camera_write_register(sensor, ARV_FAKE_CAMERA_REGISTER_ACQUISITION_FRAME_PERIOD_US, kFramePeriod);
+        arv_fake_camera_set_fill_pattern(sensor, &Data::fill, this);
+    }
+    void unplug() {
+        if (network != nullptr) g_object_unref(network);
+        network = nullptr;
+    }
+};
+
+GigeCamera::GigeCamera(TableCamera& camera, const std::string& host, const std::string& serial)
+    : data_(new Data{camera, host, serial}) {
+    data_->plug();
+}
+
+GigeCamera::~GigeCamera() { data_->unplug(); }
+
+std::string GigeCamera::address() const { return "genicam://Aravis-" + data_->serial; }
+
+void GigeCamera::setPlugged(bool plugged) {
+    if (plugged == (data_->network != nullptr)) return;
+    plugged ? data_->plug() : data_->unplug();
+}
+
+} // namespace lumorph::table

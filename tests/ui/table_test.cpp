@@ -1,0 +1,224 @@
+#include <cmath>
+#include <fstream>
+#include <sstream>
+
+#include <QGuiApplication>
+#include <QJsonArray>
+#include <QJsonDocument>
+#include <QJsonObject>
+#include <QPainter>
+#include <QProcess>
+#include <QRasterWindow>
+#include <QScreen>
+#include <QTest>
+#include <gtest/gtest.h>
+#include <opencv2/core.hpp>
+
+#include "calibration/capture/capture_camera.h"
+#include "core/geometry/calibrated_camera.h"
+#include "core/loop/pose_stream.h"
+#include "core/rig/rig_file.h"
+#include "core/scene/installation_store.h"
+#include "core/scene/measured_servos.h"
+#include "devices/controllers/servo_link.h"
+#include "devices/trackers/tracker.h"
+#include "tests/core/temporary_folder.h"
+#include "tests/ui/event_loop.h"
+
+// The table behind its sockets, judged by its truth: light by the closed form of a ray and a plane.
+
+namespace lumorph::test {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr double kRim = 16.0;         // camera pixels
+constexpr double kDeviceReach = 0.17; // metres: a tablet's corner, and some room beside it
+
+/// What the projector at the screen throws: black, with one white square.
+class Thrown : public QRasterWindow {
+public:
+    Thrown() {
+        setFlags(Qt::FramelessWindowHint | Qt::X11BypassWindowManagerHint);
+        setGeometry(screen()->geometry());
+        setCursor(Qt::BlankCursor);
+        show();
+    }
+    void light(const QRect& square, const QColor& color = Qt::white) {
+        square_ = square;
+        color_ = color;
+        update();
+    }
+
+protected:
+    void paintEvent(QPaintEvent* /*event*/) override {
+        QPainter painter(this);
+        painter.fillRect(QRect(QPoint(), size()), Qt::black);
+        painter.fillRect(square_, color_);
+    }
+
+private:
+    QRect square_;
+    QColor color_ = Qt::white;
+};
+
+class TableProgram : public testing::Test {
+protected:
+    void start(const QStringList& more = {}) {
+        const QString truthFile = QString::fromStdString(folder / "truth.json");
+        program.setProcessChannelMode(QProcess::ForwardedErrorChannel);
+        program.start(LUMORPH_BIN_DIR "/lumorph-table",
+                      QStringList{"--seed", "5", "--truth", truthFile, "--camera-size", "640x512"} + more);
+        ready = readLine();
+        ASSERT_TRUE(ready.contains("cameras")) << "it did not start";
+        std::ifstream file(folder / "truth.json");
+        std::stringstream text;
+        text << file.rdbuf();
+        const auto json = QJsonDocument::fromJson(QByteArray::fromStdString(text.str())).object();
+        truth = parseInstallation(QJsonDocument(json["room"].toObject()).toJson().toStdString(), "truth");
+    }
+    ~TableProgram() override {
+        if (program.state() != QProcess::Running) return;
+        program.write("quit\n");
+        EXPECT_TRUE(program.waitForFinished(10'000));
+        EXPECT_EQ(program.exitCode(), 0);
+    }
+    [[nodiscard]] QJsonObject readLine() {
+        if (!eventually([&] { return program.canReadLine() || program.state() == QProcess::NotRunning; })) return {};
+        return QJsonDocument::fromJson(program.readLine()).object();
+    }
+    QJsonObject tell(const QString& line) {
+        program.write((line + "\n").toUtf8());
+        return readLine();
+    }
+    void does(const QString& line) {
+        const QJsonObject said = tell(line);
+        EXPECT_TRUE(said["ok"].toBool()) << line.toStdString() << ": " << said["error"].toString().toStdString();
+    }
+    [[nodiscard]] std::string address(const char* kind) const {
+        return ready["cameras"].toArray().first().toObject()[kind].toString().toStdString();
+    }
+
+    TemporaryFolder folder;
+    QProcess program;
+    QJsonObject ready;
+    Installation truth;
+};
+
+/// Where a projector truly throws a pixel on the table.
+glm::dvec3 thrownTo(const CalibratedCamera& projector, const glm::dvec2& pixel) {
+    const glm::dvec3 from = positionOf(projector), along = directionOf(projector, pixel);
+    return from - from.y / along.y * along;
+}
+
+/// The middle of what is brighter than a third of the brightest, or nearly.
+cv::Point2d brightest(const cv::Mat& picture) {
+    double most = 0.0;
+    cv::minMaxLoc(picture, nullptr, &most);
+    double sum = 0.0;
+    cv::Point2d at;
+    for (int y = 0; y < picture.rows; ++y)
+        for (int x = 0; x < picture.cols; ++x)
+            if (const double light = picture.at<std::uint8_t>(y, x); light > 0.3 * most) {
+                sum += light;
+                at += light * cv::Point2d(x, y);
+            }
+    return at / sum;
+}
+
+TEST_F(TableProgram, CamerasSeeWhatTheScreenShowsWhereItsTruthSays) {
+    ASSERT_NO_FATAL_FAILURE(start());
+    Thrown thrown;
+    ASSERT_TRUE(QTest::qWaitForWindowExposed(&thrown));
+    const CalibratedCamera& projector = truth.projectors.front().camera;
+    ASSERT_EQ(projector.size, glm::ivec2(thrown.width(), thrown.height()));
+    for (const char* kind : {"uri", "mjpeg"}) {
+        const auto camera = openCaptureCamera(address(kind));
+        int seen = 0;
+        for (const double across : {0.1, 0.88})
+            for (const double down : {0.12, 0.85}) {
+                const QRect square(int(across * thrown.width()), int(down * thrown.height()), 24, 24);
+                const glm::dvec2 middle(square.x() + 11.5, square.y() + 11.5);
+                const glm::dvec3 place = thrownTo(projector, middle);
+                const CalibratedCamera& seer = truth.cameras.front().camera;
+                const auto wanted = pixelOf(seer, place);
+                if (!wanted || wanted->x < kRim || wanted->y < kRim || wanted->x > seer.size.x - kRim ||
+                    wanted->y > seer.size.y - kRim || std::abs(place.x) > 0.5 * truth.tableSize.x ||
+                    std::abs(place.z) > 0.5 * truth.tableSize.y ||
+                    glm::distance(place, glm::dvec3(truth.worldFromDevice[3])) < kDeviceReach)
+                    continue;
+                thrown.light(square);
+                pass(200ms);
+                const cv::Point2d found = brightest(greyOf(camera->grab({})));
+                EXPECT_NEAR(found.x, wanted->x, 0.5) << kind << ", " << across << ", " << down;
+                EXPECT_NEAR(found.y, wanted->y, 0.5) << kind << ", " << across << ", " << down;
+                ++seen;
+            }
+        EXPECT_GE(seen, 2) << kind;
+    }
+}
+
+TEST_F(TableProgram, ExposureGainAndWhatCoversTheScreenAreSeen) {
+    ASSERT_NO_FATAL_FAILURE(start());
+    Thrown thrown;
+    ASSERT_TRUE(QTest::qWaitForWindowExposed(&thrown));
+    const auto camera = openCaptureCamera(address("uri"));
+    ASSERT_TRUE(camera->exposures());
+    thrown.light(QRect(QPoint(), thrown.size()), QColor(180, 180, 180));
+    pass(300ms);
+    const auto mean = [&] {
+        (void)camera->grab({}); // one that may have begun before
+        return cv::mean(greyOf(camera->grab({})))[0];
+    };
+    camera->setExposure(0.004);
+    const double once = mean();
+    camera->setExposure(0.008);
+    EXPECT_NEAR(mean() / once, 2.0, 0.06) << "linear, and below white";
+    // A message of another program lies over the picture.
+    Thrown message;
+    message.setGeometry(0, 0, thrown.width() / 2, thrown.height());
+    pass(300ms);
+    EXPECT_LT(mean(), 1.6 * once);
+}
+
+TEST_F(TableProgram, TrackerTellsWhereThingsTrulyAre) {
+    ASSERT_NO_FATAL_FAILURE(start());
+    const auto tracker = openTracker(ready["tracker"].toString().toStdString(), {});
+    const auto bodyOf = [&](const std::string& name) -> std::optional<Pose> {
+        for (const auto& body : tracker->status().bodies)
+            if (body.name == name && body.valid) return body.pose;
+        return std::nullopt;
+    };
+    ASSERT_TRUE(eventually([&] { return bodyOf("device").has_value(); }));
+    EXPECT_FALSE(bodyOf("pointer")) << "nobody has brought it";
+    does("touch 0.1 0.05 -0.2");
+    pass(1s);
+    const auto inRoom = [&](const glm::dvec3& place) {
+        return glm::dvec3(truth.worldFromTracker * glm::vec4(glm::vec3(place), 1.0F));
+    };
+    glm::dvec3 tip(0.0);
+    for (int k = 0; k < 40; ++k) {
+        const auto pose = bodyOf("pointer");
+        ASSERT_TRUE(pose);
+        tip += inRoom(*pose * glm::dvec3(truth.pointerTip)) / 40.0;
+        pass(20ms);
+    }
+    EXPECT_LT(glm::distance(tip, glm::dvec3(0.1, 0.05, -0.2)), 1e-3);
+    does("fault tracker_dropout on");
+    EXPECT_TRUE(eventually([&] { return !bodyOf("pointer"); }, 5s));
+    does("fault tracker_dropout off");
+    EXPECT_TRUE(eventually([&] { return bodyOf("pointer").has_value(); }, 5s));
+    EXPECT_FALSE(tell("touch nowhere")["ok"].toBool());
+    EXPECT_FALSE(tell("carry 1 2")["ok"].toBool());
+}
+
+TEST_F(TableProgram, IsFoundByTheCommandThatListsCameras) {
+    ASSERT_NO_FATAL_FAILURE(start());
+    QProcess command;
+    command.start(LUMORPH_BIN_DIR "/lumorph", {"cameras", "--json"});
+    ASSERT_TRUE(eventually([&] { return command.state() == QProcess::NotRunning; }, 30s));
+    EXPECT_TRUE(command.readAllStandardOutput().contains(QByteArray::fromStdString(address("uri"))));
+}
+
+} // namespace
+} // namespace lumorph::test
