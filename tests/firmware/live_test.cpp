@@ -14,6 +14,7 @@
 #include <gtest/gtest.h>
 
 #include "devices/controllers/servo_link.h"
+#include "tests/devices/event_loop.h"
 #include "tests/firmware/firmata_bytes.h"
 #include "tests/firmware/live_board.h"
 #include "tests/firmware/twelve.h"

@@ -15,7 +15,7 @@ namespace lumorph::studio {
 
 namespace {
 
-constexpr int kGlideMilliseconds = 700;
+constexpr int kGlideMilliseconds = 400;
 
 /// Part of the way from one placement to another, the short way round.
 Placement between(const Placement& from, const Placement& to, double share) {
