@@ -25,15 +25,14 @@ struct GigeCamera::Data {
 
     /// In the camera's own thread.
     static void fill(ArvBuffer* buffer, void* self, guint32 exposure, guint32 gain, ArvPixelFormat /*format*/) {
-        std::size_t bytes = 0; // of the image: the buffer's own data has no length yet
-        auto* to = static_cast<std::uint8_t*>(const_cast<void*>(arv_buffer_get_image_data(buffer, &bytes)));
+        std::size_t none = 0; // it has no length before it is filled
+        auto* to = static_cast<std::uint8_t*>(const_cast<void*>(arv_buffer_get_image_data(buffer, &none)));
         const int width = arv_buffer_get_image_width(buffer), height = arv_buffer_get_image_height(buffer);
         cv::Mat1b picture = static_cast<Data*>(self)->camera.photograph(1e-6 * exposure, gain);
         if (picture.cols != width || picture.rows != height) // the client has cut a part out
             picture = picture(cv::Rect(0, 0, std::min(width, picture.cols), std::min(height, picture.rows)));
-        std::fill_n(to, bytes, std::uint8_t{0});
-        for (int y = 0; y < picture.rows && static_cast<std::size_t>((y + 1) * width) <= bytes; ++y)
-            std::copy_n(picture[y], picture.cols, to + y * width);
+        std::fill_n(to, width * height, std::uint8_t{0});
+        for (int y = 0; y < picture.rows; ++y) std::copy_n(picture[y], picture.cols, to + y * width);
     }
     void plug() {
         network = arv_gv_fake_camera_new(host.c_str(), serial.c_str());
@@ -64,7 +63,7 @@ GigeCamera::GigeCamera(TableCamera& camera, const std::string& host, const std::
 
 GigeCamera::~GigeCamera() { data_->unplug(); }
 
-std::string GigeCamera::address() const { return "genicam://Aravis-" + data_->serial; }
+std::string GigeCamera::address() const { return "genicam://Aravis-Fake-" + data_->serial; }
 
 void GigeCamera::setPlugged(bool plugged) {
     if (plugged == (data_->network != nullptr)) return;

@@ -231,12 +231,15 @@ private:
     void start() {
         Failure failure;
         if (arv_camera_is_gv_device(camera_.get())) {
-            arv_camera_gv_set_packet_size_adjustment(camera_.get(), ARV_GV_PACKET_SIZE_ADJUSTMENT_ON_FAILURE_ONCE);
+            arv_camera_gv_set_packet_size_adjustment(camera_.get(), ARV_GV_PACKET_SIZE_ADJUSTMENT_ONCE);
             arv_camera_gv_set_stream_options(camera_.get(), ARV_GV_STREAM_OPTION_PACKET_SOCKET_DISABLED);
         }
-        stream_.reset(arv_camera_create_stream(camera_.get(), nullptr, nullptr, failure.place()));
+        stream_.reset(arv_camera_create_stream(camera_.get(), &GenicamCamera::takePartFirst, nullptr, failure.place()));
         if (!stream_) throw error("cannot send pictures: " + failure.why(), "close other programs that use it");
         const guint payload = arv_camera_get_payload(camera_.get(), failure.place());
+        if (ARV_IS_GV_STREAM(stream_.get())) // packets wait there while this machine is busy
+            g_object_set(stream_.get(), "socket-buffer", ARV_GV_STREAM_SOCKET_BUFFER_FIXED, "socket-buffer-size",
+                         static_cast<gint>(std::min<guint>(4 * payload, 64U << 20U)), nullptr);
         for (guint k = 0; k < kBuffers; ++k) arv_stream_push_buffer(stream_.get(), arv_buffer_new_allocate(payload));
         arv_camera_set_acquisition_mode(camera_.get(), ARV_ACQUISITION_MODE_CONTINUOUS, failure.place());
         isLost_ = false;
@@ -246,6 +249,11 @@ private:
             G_CALLBACK(+[](ArvDevice* /*device*/, std::atomic<bool>* lost) { *lost = true; }), &isLost_);
         arv_camera_start_acquisition(camera_.get(), failure.place());
         if (failure) throw error("does not start: " + failure.why(), "plug it in again");
+    }
+
+    /// A packet that is fetched late is a packet lost: its thread goes before others where the system allows it.
+    static void takePartFirst(void* /*none*/, ArvStreamCallbackType type, ArvBuffer* /*buffer*/) {
+        if (type == ARV_STREAM_CALLBACK_TYPE_INIT) arv_make_thread_high_priority(-10);
     }
 
     void close() {

@@ -233,8 +233,9 @@ public:
 
 private:
     static void fill(ArvBuffer* buffer, void* self, guint32 exposure, guint32 /*gain*/, ArvPixelFormat /*format*/) {
-        std::size_t size = 0; // of the image: the buffer's own data has none yet
-        auto* pixels = static_cast<std::uint8_t*>(const_cast<void*>(arv_buffer_get_image_data(buffer, &size)));
+        std::size_t none = 0; // it has no length before it is filled
+        auto* pixels = static_cast<std::uint8_t*>(const_cast<void*>(arv_buffer_get_image_data(buffer, &none)));
+        const int size = arv_buffer_get_image_width(buffer) * arv_buffer_get_image_height(buffer);
         const int value = static_cast<GigeCamera*>(self)->light * static_cast<int>(exposure) / 100;
         std::fill_n(pixels, size, static_cast<std::uint8_t>(std::min(value, 255)));
     }
