@@ -3,6 +3,13 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
+
+#include <arpa/inet.h>
+#include <net/if.h>
+#include <sys/ioctl.h>
+#include <sys/socket.h>
+#include <unistd.h>
 
 #include <arv.h>
 #include <opencv2/imgproc.hpp>
@@ -15,6 +22,22 @@ namespace {
 
 /// A picture can be worked out so often on one core.
 constexpr std::uint32_t kFramePeriod = 100'000; // us
+
+/// 127.0.0.1 is there; others have to be given to the loopback, which only root may. Whether it took them shows when
+/// the camera starts.
+void addToLoopback(const std::string& host) {
+    ifreq request{};
+    const std::string alias = "lo:" + host.substr(host.rfind('.') + 1);
+    alias.copy(request.ifr_name, IFNAMSIZ - 1);
+    sockaddr_in address{};
+    address.sin_family = AF_INET;
+    inet_pton(AF_INET, host.c_str(), &address.sin_addr);
+    std::memcpy(&request.ifr_addr, &address, sizeof address);
+    const int socket = ::socket(AF_INET, SOCK_DGRAM, 0);
+    if (socket < 0) return;
+    ioctl(socket, SIOCSIFADDR, &request);
+    ::close(socket);
+}
 
 } // namespace
 
@@ -35,10 +58,12 @@ struct GigeCamera::Data {
         for (int y = 0; y < picture.rows; ++y) std::copy_n(picture[y], picture.cols, to + y * width);
     }
     void plug() {
+        if (host != "127.0.0.1") addToLoopback(host);
         network = arv_gv_fake_camera_new(host.c_str(), serial.c_str());
         if (!arv_gv_fake_camera_is_running(network)) {
             unplug();
-            throw DeviceError("camera at " + host, "the address is taken", "end the program that has it");
+            throw DeviceError("camera at " + host, "another program has the address, or the loopback has none of it",
+                              "end the program that has it, or run: sudo ip address add " + host + "/8 dev lo");
         }
         ArvFakeCamera* sensor = arv_gv_fake_camera_get_fake_camera(network);
         const auto width = static_cast<guint32>(camera.size().width),

@@ -5,7 +5,9 @@
 #include <cstdint>
 #include <deque>
 #include <mutex>
+#include <span>
 #include <thread>
+#include <tuple>
 #include <utility>
 
 #include <poll.h>
@@ -131,6 +133,8 @@ std::vector<Screen> ScreenEye::screens() {
     const OpenDisplay display = openDisplay();
     int count = 0;
     XRRMonitorInfo* monitors = XRRGetMonitors(display.get(), DefaultRootWindow(display.get()), True, &count);
+    std::ranges::sort(std::span(monitors, static_cast<std::size_t>(std::max(count, 0))), {},
+                      [](const XRRMonitorInfo& one) { return std::tuple(one.primary == 0, one.x, one.y); });
     std::vector<Screen> found;
     for (int i = 0; i < count; ++i) {
         const XRRMonitorInfo& one = monitors[i];

@@ -20,8 +20,8 @@ struct Screen {
 /// most 100 times a second, and remembers the last half second.
 class ScreenEye {
 public:
-    /// All screens of the display of the environment. Throws DeviceError where there is no display, or one that cannot
-    /// be looked at.
+    /// All screens of the display of the environment, the primary one first, then from left to right. Throws
+    /// DeviceError where there is no display, or one that cannot be looked at.
     [[nodiscard]] static std::vector<Screen> screens();
 
     explicit ScreenEye(std::vector<Screen> screens);
