@@ -2,17 +2,21 @@
 
 #include <algorithm>
 #include <chrono>
+#include <condition_variable>
 #include <cstdint>
 #include <deque>
 #include <mutex>
+#include <optional>
 #include <span>
 #include <thread>
 #include <tuple>
 #include <utility>
 
 #include <poll.h>
+#include <sys/eventfd.h>
 #include <sys/ipc.h>
 #include <sys/shm.h>
+#include <unistd.h>
 
 #include "core/base/error.h"
 
@@ -30,6 +34,8 @@ namespace {
 
 constexpr Microseconds kRemembered{500'000};
 constexpr std::chrono::milliseconds kLeastPause{10};
+constexpr Microseconds kPointerMoves{100'000}; ///< without damage: looked at again
+constexpr std::chrono::seconds kMostWaiting{1};
 
 struct CloseDisplay {
     void operator()(Display* display) const noexcept { XCloseDisplay(display); }
@@ -121,12 +127,21 @@ void drawPointer(Display* display, const Screen& screen, Image& picture) {
 struct ScreenEye::Data {
     std::vector<Screen> screens;
     SteadyClock clock;
-    mutable std::mutex mutex; ///< of `shown`
+    mutable std::mutex mutex; ///< of what follows
+    mutable std::condition_variable_any seen;
     std::vector<std::deque<Shown>> shown;
+    Microseconds known{0};                               ///< until when nothing changed unseen
+    int wake = ::eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK); ///< somebody wants to know until later
     std::jthread thread;
 
+    ~Data() { ::close(wake); }
     void look(const std::stop_token& stop);
-    void takeAll(Display* display, std::vector<std::unique_ptr<SharedPicture>>& pictures);
+    void takeAll(Display* display, std::vector<std::unique_ptr<SharedPicture>>& pictures, Microseconds changed);
+    void isKnownUntil(Microseconds time) {
+        const std::scoped_lock lock(mutex);
+        known = std::max(known, time);
+        seen.notify_all();
+    }
 };
 
 std::vector<Screen> ScreenEye::screens() {
@@ -147,39 +162,64 @@ std::vector<Screen> ScreenEye::screens() {
     return found;
 }
 
-void ScreenEye::Data::takeAll(Display* display, std::vector<std::unique_ptr<SharedPicture>>& pictures) {
-    const Microseconds now = clock.now();
+/// `changed` is when the display was told to show something else.
+void ScreenEye::Data::takeAll(Display* display, std::vector<std::unique_ptr<SharedPicture>>& pictures,
+                              Microseconds changed) {
+    const Microseconds begun = clock.now();
     for (std::size_t k = 0; k < screens.size(); ++k) {
         Image picture = pictures[k]->take(screens[k]);
         drawPointer(display, screens[k], picture);
         const std::scoped_lock lock(mutex);
         std::deque<Shown>& past = shown[k];
         if (!past.empty() && past.back().picture->pixels() == picture.pixels()) continue;
-        past.push_back({std::make_shared<const Image>(std::move(picture)), now});
-        while (past.size() > 1 && past[1].since < now - kRemembered) past.pop_front();
+        past.push_back({std::make_shared<const Image>(std::move(picture)), std::clamp(changed, known, begun)});
+        while (past.size() > 1 && past[1].since < begun - kRemembered) past.pop_front();
     }
+    isKnownUntil(begun);
 }
 
 void ScreenEye::Data::look(const std::stop_token& stop) {
     const OpenDisplay display = openDisplay();
     std::vector<std::unique_ptr<SharedPicture>> pictures;
     for (const Screen& screen : screens) pictures.push_back(std::make_unique<SharedPicture>(display.get(), screen));
-    int events = 0, errors = 0;
-    const bool tells = XDamageQueryExtension(display.get(), &events, &errors) != 0;
+    int damaged = 0, errors = 0;
+    const bool tells = XDamageQueryExtension(display.get(), &damaged, &errors) != 0;
     const Damage damage =
         tells ? XDamageCreate(display.get(), DefaultRootWindow(display.get()), XDamageReportNonEmpty) : 0;
     XFixesSelectCursorInput(display.get(), DefaultRootWindow(display.get()), XFixesDisplayCursorNotifyMask);
-    while (!stop.stop_requested()) {
-        // Before it is looked at, so that what changes meanwhile is told again.
-        if (tells) XDamageSubtract(display.get(), damage, None, None);
-        takeAll(display.get(), pictures);
-        std::this_thread::sleep_for(kLeastPause);
-        // The pointer moves without damage.
-        pollfd said{ConnectionNumber(display.get()), POLLIN, 0};
-        if (XPending(display.get()) == 0) ::poll(&said, 1, tells ? 100 : 0);
+    std::optional<Microseconds> changed;
+    /// Whether the display has told that something changed before it was asked.
+    const auto isTold = [&] {
+        bool told = !tells;
+        XSync(display.get(), False);
         while (XPending(display.get()) > 0) {
             XEvent event;
             XNextEvent(display.get(), &event);
+            told = true;
+            if (event.type != damaged + XDamageNotify || changed) continue;
+            // The server's clock is this machine's, in milliseconds that fit 32 bits.
+            const auto now = static_cast<std::uint32_t>(clock.now().count() / 1000);
+            const std::uint32_t ago =
+                now - static_cast<std::uint32_t>(reinterpret_cast<const XDamageNotifyEvent&>(event).timestamp);
+            changed = clock.now() - Microseconds(std::int64_t{1000} * ago);
+        }
+        return told;
+    };
+    while (!stop.stop_requested()) {
+        // Before it is looked at, so that what changes meanwhile is told again.
+        if (tells) XDamageSubtract(display.get(), damage, None, None);
+        takeAll(display.get(), pictures, changed.value_or(clock.now()));
+        changed.reset();
+        std::this_thread::sleep_for(kLeastPause);
+        const Microseconds again = clock.now() + kPointerMoves;
+        while (!stop.stop_requested() && clock.now() < again) {
+            const Microseconds asked = clock.now();
+            if (isTold()) break;
+            isKnownUntil(asked);
+            pollfd said[] = {{ConnectionNumber(display.get()), POLLIN, 0}, {wake, POLLIN, 0}};
+            ::poll(said, std::size(said), static_cast<int>(kPointerMoves.count() / 1000));
+            eventfd_t times = 0;
+            (void)::eventfd_read(wake, &times);
         }
     }
 }
@@ -206,7 +246,9 @@ ScreenEye::~ScreenEye() {
 const std::vector<Screen>& ScreenEye::watched() const noexcept { return data_->screens; }
 
 ScreenEye::Shown ScreenEye::at(std::size_t screen, Microseconds time) const {
-    const std::scoped_lock lock(data_->mutex);
+    std::unique_lock lock(data_->mutex);
+    if (data_->known < time) (void)::eventfd_write(data_->wake, 1);
+    data_->seen.wait_for(lock, kMostWaiting, [&] { return data_->known >= time; });
     const std::deque<Shown>& past = data_->shown.at(screen);
     const auto after = std::ranges::upper_bound(past, time, {}, &Shown::since);
     return after == past.begin() ? past.front() : *(after - 1);

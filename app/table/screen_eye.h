@@ -17,7 +17,8 @@ struct Screen {
 
 /// Looks at screens as they are (MIT-SHM, with the mouse pointer): whatever is in front there is what a projector at
 /// that screen would throw. A thread of its own looks again when the display says that something changed (DAMAGE), at
-/// most 100 times a second, and remembers the last half second.
+/// most 100 times a second, and remembers the last half second. A busy machine does not make it late: a change counts
+/// from when the display was told of it, and who asks waits until all until then is known.
 class ScreenEye {
 public:
     /// All screens of the display of the environment, the primary one first, then from left to right. Throws

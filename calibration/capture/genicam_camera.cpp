@@ -4,8 +4,10 @@
 #include <array>
 #include <atomic>
 #include <chrono>
+#include <condition_variable>
 #include <mutex>
 #include <optional>
+#include <set>
 #include <string_view>
 #include <thread>
 #include <utility>
@@ -25,8 +27,11 @@ constexpr std::string_view kGenicamScheme = "genicam://";
 constexpr guint kBuffers = 4;
 constexpr guint64 kPopWait = 50'000; ///< microseconds between looks at whether it is still wanted
 constexpr auto kFrameWithin = 10s;   ///< for a picture
+constexpr auto kOthersLeave = 5s;
 constexpr int kMostIncomplete = 20;
-constexpr gint64 kDrift = 5;    ///< microseconds a frame, of the camera's clock against this machine's
+constexpr int kFirstFrames =
+    3;                       ///< after a start: their way takes longer, and how long it usually takes is not known yet
+constexpr gint64 kDrift = 5; ///< microseconds a frame, of the camera's clock against this machine's
 constexpr int kLeastSide = 200; ///< pixels: no board is read in less
 
 struct Unref {
@@ -59,6 +64,42 @@ std::mutex& listMutex() {
     static std::mutex mutex;
     return mutex;
 }
+
+/// A camera obeys one at a time, and whoever leaves it stops it: within this process the next one waits until the one
+/// before has left.
+class Lease {
+public:
+    explicit Lease(std::string id) : id_(std::move(id)) {
+        std::unique_lock lock(mutex());
+        isMine_ = left().wait_for(lock, kOthersLeave, [&] { return !taken().contains(id_); });
+        if (isMine_) taken().insert(id_);
+    }
+    ~Lease() {
+        const std::scoped_lock lock(mutex());
+        if (isMine_) taken().erase(id_);
+        left().notify_all();
+    }
+    Lease(const Lease&) = delete;
+    Lease& operator=(const Lease&) = delete;
+    [[nodiscard]] bool isMine() const { return isMine_; }
+
+private:
+    static std::mutex& mutex() {
+        static std::mutex one;
+        return one;
+    }
+    static std::condition_variable& left() {
+        static std::condition_variable one;
+        return one;
+    }
+    static std::set<std::string>& taken() {
+        static std::set<std::string> ids;
+        return ids;
+    }
+
+    std::string id_;
+    bool isMine_ = false;
+};
 
 /// How a pixel format becomes 8-bit grey or BGR.
 struct Format {
@@ -102,7 +143,9 @@ cv::Mat pictureOf(ArvBuffer* buffer, const Format& format) {
 
 class GenicamCamera final : public CaptureCamera {
 public:
-    explicit GenicamCamera(const std::string& address) : address_(address), id_(address.substr(kGenicamScheme.size())) {
+    explicit GenicamCamera(const std::string& address)
+        : address_(address), id_(address.substr(kGenicamScheme.size())), lease_(id_) {
+        if (!lease_.isMine()) throw error("is in use here already", "end the other measurement that looks through it");
         open({});
     }
     ~GenicamCamera() override { close(); }
@@ -118,7 +161,8 @@ public:
             if (!buffer) continue;
             const bool isWhole = arv_buffer_get_status(buffer) == ARV_BUFFER_STATUS_SUCCESS;
             cv::Mat picture;
-            if (isWhole && takenAt(buffer) - exposure_ >= called) picture = pictureOf(buffer, *format_);
+            if (isWhole && takenAt(buffer) - exposure_ >= called && ++frames_ > kFirstFrames)
+                picture = pictureOf(buffer, *format_);
             arv_stream_push_buffer(stream_.get(), buffer);
             if (!picture.empty()) return picture;
             if (!isWhole && ++incomplete >= kMostIncomplete)
@@ -243,6 +287,7 @@ private:
         for (guint k = 0; k < kBuffers; ++k) arv_stream_push_buffer(stream_.get(), arv_buffer_new_allocate(payload));
         arv_camera_set_acquisition_mode(camera_.get(), ARV_ACQUISITION_MODE_CONTINUOUS, failure.place());
         isLost_ = false;
+        frames_ = 0;
         ahead_.reset();
         lostSignal_ = g_signal_connect(
             arv_camera_get_device(camera_.get()), "control-lost",
@@ -279,12 +324,14 @@ private:
     }
 
     std::string address_, id_;
+    Lease lease_; ///< given back after all that follows
     Owned<ArvCamera> camera_;
     Owned<ArvStream> stream_;
     std::optional<Format> format_;
     cv::Size size_;
     gint64 exposure_ = 0; ///< microseconds
     gint64 toldBefore_ = 0;
+    int frames_ = 0;              ///< since it was started
     std::optional<gint64> ahead_; ///< of this machine's clock before the camera's, microseconds
     std::optional<Exposures> exposures_;
     std::vector<std::string> automatics_;

@@ -156,7 +156,8 @@ const SettleTime& PoseCapture::measureSettle(const Progress& progress) {
                 steady = 0;
                 late = frame + 1;
             }
-            if (begun > settings_.longestSettle || frame >= kMostFrames)
+            // Once it is seen, a camera may take its time to show it again.
+            if (steady == 0 && (begun > settings_.longestSettle || frame >= kMostFrames))
                 tooSlow("a new picture takes longer than " + std::to_string(settings_.longestSettle.count() / 1000) +
                         " ms to be seen completely");
         }

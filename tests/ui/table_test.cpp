@@ -2,6 +2,8 @@
 #include <fstream>
 #include <sstream>
 
+#include <QAbstractButton>
+#include <QComboBox>
 #include <QGuiApplication>
 #include <QJsonArray>
 #include <QJsonDocument>
@@ -23,7 +25,9 @@
 #include "devices/controllers/servo_link.h"
 #include "devices/trackers/tracker.h"
 #include "tests/core/temporary_folder.h"
+#include "tests/support/long_tests.h"
 #include "tests/ui/event_loop.h"
+#include "tests/ui/studio_window.h"
 
 // The table behind its sockets, judged by its truth: light by the closed form of a ray and a plane.
 
@@ -68,7 +72,8 @@ protected:
         const QString truthFile = QString::fromStdString(folder / "truth.json");
         program.setProcessChannelMode(QProcess::ForwardedErrorChannel);
         program.start(LUMORPH_BIN_DIR "/lumorph-table",
-                      QStringList{"--seed", "5", "--truth", truthFile, "--camera-size", "640x512"} + more);
+                      QStringList{"--seed", "5", "--truth", truthFile} +
+                          (more.isEmpty() ? QStringList{"--camera-size", "640x512"} : more));
         ready = readLine();
         ASSERT_TRUE(ready.contains("cameras")) << "it did not start";
         std::ifstream file(folder / "truth.json");
@@ -210,6 +215,78 @@ TEST_F(TableProgram, TrackerTellsWhereThingsTrulyAre) {
     EXPECT_TRUE(eventually([&] { return bodyOf("pointer").has_value(); }, 5s));
     EXPECT_FALSE(tell("touch nowhere")["ok"].toBool());
     EXPECT_FALSE(tell("carry 1 2")["ok"].toBool());
+}
+
+/// A body's pose from another one's, by OpenCV's conventions.
+glm::dmat4 fromOther(const CalibratedCamera& of, const CalibratedCamera& other) {
+    return of.cameraFromWorld * glm::inverse(other.cameraFromWorld);
+}
+
+// By the mouse, through the camera's packets and the projector's screen; judged by what the table wrote.
+TEST_F(TableProgram, ProjectorIsCalibratedInTheWindowByTheCameraOfTheTable) {
+    if (!longTests()) GTEST_SKIP() << "minutes of photographs: LUMORPH_LONG_TESTS=1";
+    ASSERT_NO_FATAL_FAILURE(start({"--camera-size", "1600x1280"})); // one pixel for each of the projector, nearly
+    TemporaryFolder session;
+    {
+        studio::Settings settings; // as a new user has it
+        settings.remove("calibrate");
+        std::filesystem::create_directories(session / "poses");
+        settings.setValue("calibrate/saved", QString::fromStdString(session / "poses"));
+        settings.setValue("calibrate/camera/poses", 4);
+    }
+    StudioWindow window(session / "session", "scene");
+    ASSERT_TRUE(eventually([&] { return window.studio().jobs.running().empty(); }, 60s));
+    window.window().showWorkspace("calibrate");
+    window.click("calibrate.way.camera");
+    const auto choose = [&](const char* list, int index) {
+        auto* box = window.find<QComboBox>(list);
+        box->setCurrentIndex(index);
+        emit box->activated(index);
+    };
+    choose("calibrate.screen", 1); // the only one: the studio is on it, and asks
+    window.studio().notices.at("output").front().actions.front().run();
+    const auto shown = [&] { return window.studio().outputs.window(0); };
+    ASSERT_TRUE(eventually([&] { return shown() && shown()->calibrationProblem().isEmpty(); }, 20s))
+        << "the projector has its screen's pixels";
+    window.click("calibrate.camera.search");
+    const auto listed = [&] { return window.find<QComboBox>("calibrate.camera")->count() > 1; };
+    ASSERT_TRUE(eventually(listed, 20s));
+    choose("calibrate.camera", 1);
+    const auto story = [&] {
+        return (window.text("calibrate.card.title") + ": " + window.text("calibrate.card.text")).toStdString();
+    };
+    const auto offers = [&](const QString& words) {
+        return eventually(
+            [&] {
+                const auto* next = window.findNow<QAbstractButton>("calibrate.card.next");
+                return next && next->text().startsWith(words);
+            },
+            120s);
+    };
+    for (int k = 1; k <= 4; ++k) {
+        ASSERT_TRUE(offers(QString("Photograph pose %1").arg(k))) << story();
+        does(QString("board %1").arg(k));
+        pass(700ms);
+        window.click("calibrate.card.next");
+    }
+    ASSERT_TRUE(offers("Use this calibration")) << story();
+    window.click("calibrate.card.next");
+    const auto room = [&]() -> const Installation& { return *window.state().installation; };
+    ASSERT_TRUE(eventually([&] { return room().projectors.front().lens.isCalibrated(); }, 10s)) << story();
+    ASSERT_EQ(room().cameras.size(), 1U);
+    const CalibratedCamera& found = room().projectors.front().camera;
+    const CalibratedCamera& wanted = truth.projectors.front().camera;
+    EXPECT_NEAR(found.focal.x / wanted.focal.x, 1.0, 0.004);
+    EXPECT_NEAR(found.focal.y / wanted.focal.y, 1.0, 0.004);
+    const glm::dmat4 between = fromOther(found, room().cameras.front().camera),
+                     truly = fromOther(wanted, truth.cameras.front().camera);
+    EXPECT_LT(glm::distance(glm::dvec3(between[3]), glm::dvec3(truly[3])), 0.01);
+    const glm::dmat3 turn = glm::transpose(glm::dmat3(truly)) * glm::dmat3(between);
+    EXPECT_LT(std::acos(std::min(1.0, 0.5 * (turn[0][0] + turn[1][1] + turn[2][2] - 1.0))), 0.005);
+    std::printf("at the table: focal %.4f, %.4f of the truth; %.2f mm, %.3f degrees between projector and camera\n",
+                found.focal.x / wanted.focal.x, found.focal.y / wanted.focal.y,
+                1e3 * glm::distance(glm::dvec3(between[3]), glm::dvec3(truly[3])),
+                57.29578 * std::acos(std::min(1.0, 0.5 * (turn[0][0] + turn[1][1] + turn[2][2] - 1.0))));
 }
 
 TEST_F(TableProgram, IsFoundByTheCommandThatListsCameras) {

@@ -204,7 +204,7 @@ void CalibrationService::setSpacing(double spacing) {
 void CalibrationService::beginAnew() {
     cancel();
     jobs_.stop("open");
-    isOpening_ = isLooking_ = false;
+    isOpening_ = isAsked_ = isLooking_ = false;
     ++benchTry_;
     bench_ = nullptr;
     forgetPoses();
@@ -277,7 +277,7 @@ void CalibrationService::doNext() {
 
 void CalibrationService::cancel() {
     for (const char* slot : {"read", "capture", "solve"}) jobs_.stop(slot);
-    rest_ = false;
+    rest_ = isAsked_ = false;
     endWork();
     emit changed();
 }
@@ -443,12 +443,13 @@ void CalibrationService::openBench() {
             bench_ = std::move(bench);
             isOpening_ = false;
             state_.trouble.clear();
-            if (rest_) return photograph(); // asked for meanwhile
+            if (isAsked_) return photograph();
             look();
             emit changed();
         },
         [this](const std::exception& error) {
             isOpening_ = false;
+            if (isAsked_) cancel();
             setTrouble(error);
         });
     emit liveChanged();
@@ -541,6 +542,11 @@ void CalibrationService::photograph() {
     if (projector() >= document_.state().installation->projectors.size()) return tellNoProjector();
     if (!bench_) {
         if (!isOpening_) openBench();
+        isAsked_ = isOpening_; // done once it is open
+        if (isAsked_) {
+            state_.work = CalibrationState::Work::capturing;
+            state_.stage = openingTitle(state_.setup.way);
+        }
         return emit changed();
     }
     state_.work = CalibrationState::Work::capturing;

@@ -148,6 +148,7 @@ private:
     QTimer* liveTimer_;
     bool active_ = false;
     bool isOpening_ = false; ///< the bench
+    bool isAsked_ = false;   ///< a photograph, while it was opened
     bool isLooking_ = false;
     bool isStale_ = false;            ///< what is looked at has changed meanwhile: another look follows
     bool isFlatChosen_ = false;       ///< by the user; else it is the first pose

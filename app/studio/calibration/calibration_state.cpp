@@ -530,7 +530,7 @@ NextStep nextOf(const CalibrationState& state) {
         return {Do::nothing,
                 Tone::quiet,
                 tr("Which camera?"),
-                tr("Connect a camera that sees the table, and choose it at the left."),
+                tr("At the left: one of this machine, one that is found on the network, or its address."),
                 {}};
     const bool wantsMore = !isFolder && state.counting() < state.setup.poses;
     if (state.result && (!wantsMore || state.isUsed()) && !(isOld(state) && !wantsMore)) return solvedNext(state);

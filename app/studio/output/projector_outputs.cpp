@@ -5,6 +5,9 @@
 #include <QApplication>
 #include <QGuiApplication>
 
+#include "app/studio/document/scene_edit.h"
+#include "app/studio/rendering/show_frames.h"
+
 namespace lumorph::studio {
 namespace {
 
@@ -139,6 +142,41 @@ void ProjectorOutputs::showOnScreen(std::size_t projector, const QString& screen
         ask(projector, screen);
     else
         cover(projector, screen);
+}
+
+void ProjectorOutputs::useScreen(std::size_t projector, const QString& screen) {
+    const QScreen* wanted = screenNamed(screen);
+    if (projector >= count() || wanted == nullptr) return;
+    const QSize pixels = pixelsOf(*wanted);
+    const InstalledProjector& known = document_.state().installation->projectors[projector];
+    if (known.lens.way != Origin::Way::measured && sizeOf(known) != pixels)
+        editInstallation(document_, tr("%1 has the pixels of its screen").arg(titleOf(projector)),
+                         [&](Installation& room) {
+                             CalibratedCamera& camera = room.projectors[projector].camera;
+                             const glm::dvec2 focal = camera.focal * static_cast<double>(pixels.width()) /
+                                                      static_cast<double>(camera.size.x);
+                             camera = resized(camera, {pixels.width(), pixels.height()});
+                             camera.focal = focal; // a screen of another shape has no other pixels
+                         });
+    showOnScreen(projector, screen);
+}
+
+QString ProjectorOutputs::screenOf(std::size_t projector) const {
+    const auto found = outputs_.find(projector);
+    return found == outputs_.end() ? QString() : found->second.screen;
+}
+
+QString ProjectorOutputs::freeScreen() const {
+    for (const QScreen* screen : QGuiApplication::screens())
+        if (!showsStudio(screen) &&
+            std::ranges::none_of(outputs_, [&](const auto& one) { return one.second.screen == screen->name(); }))
+            return screen->name();
+    return {};
+}
+
+QSize ProjectorOutputs::pixelsOf(const QScreen& screen) {
+    const QSizeF pixels = screen.devicePixelRatio() * QSizeF(screen.size());
+    return {qRound(pixels.width()), qRound(pixels.height())};
 }
 
 void ProjectorOutputs::ask(std::size_t projector, const QString& screen) {

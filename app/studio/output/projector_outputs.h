@@ -30,6 +30,14 @@ public:
     void showInWindow(std::size_t projector);
     /// Covers a screen, by its name. Where the studio itself is in sight there, it asks first, by a notice.
     void showOnScreen(std::size_t projector, const QString& screen);
+    /// The projector is the one at this screen: as `showOnScreen`, and unless its lens was measured it is taken to have
+    /// the screen's pixels, which is a step of undo.
+    void useScreen(std::size_t projector, const QString& screen);
+    /// That a projector covers; empty: none.
+    [[nodiscard]] QString screenOf(std::size_t projector) const;
+    /// The first screen on which neither the studio nor a projector is; empty: none.
+    [[nodiscard]] QString freeScreen() const;
+    [[nodiscard]] static QSize pixelsOf(const QScreen& screen);
     void close(std::size_t projector);
     void closeAll();
     void identify(); ///< every open output shows its number

@@ -52,7 +52,7 @@ void ProjectorWindow::setProjector(const QString& name, QSize size) {
 }
 
 void ProjectorWindow::ask() {
-    if (isMinimized()) return feed_.drop(id_);
+    if (isMinimized() || !calibrationPicture_.isNull()) return feed_.drop(id_);
     ShowView view;
     view.kind = ShowView::Kind::projector;
     view.projector = number_;
@@ -81,8 +81,10 @@ void ProjectorWindow::identify(int milliseconds) {
 }
 
 void ProjectorWindow::setCalibrationPicture(const QImage& picture, quint64 ticket) {
+    const bool isOther = picture.isNull() != calibrationPicture_.isNull();
     calibrationPicture_ = picture;
     ticket_ = picture.isNull() ? 0 : ticket;
+    if (isOther) ask();
     update();
 }
 

@@ -60,7 +60,7 @@ protected:
 
 private:
     void showTitle();
-    void ask(); ///< for pictures, unless it is minimised
+    void ask(); ///< for pictures, unless it is minimised or shows those of a calibration
     void tellShown(quint64 ticket);
 
     ShowFeed& feed_;

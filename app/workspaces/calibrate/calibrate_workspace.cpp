@@ -2,9 +2,7 @@
 
 #include <algorithm>
 
-#include <QGuiApplication>
 #include <QHBoxLayout>
-#include <QScreen>
 #include <QStackedWidget>
 #include <QVBoxLayout>
 
@@ -20,16 +18,9 @@
 namespace lumorph::studio {
 namespace {
 
-/// The projector's own window; where it is not open yet it goes to a second screen, if there is one.
+/// The projector's own window; where it is not open yet it goes to a screen beside the studio's, if there is one.
 void openOutput(ProjectorOutputs& outputs, std::size_t projector) {
-    if (outputs.window(projector) == nullptr) {
-        const QScreen* own = QGuiApplication::primaryScreen();
-        for (const QScreen* screen : QGuiApplication::screens())
-            if (screen != own) {
-                outputs.showOnScreen(projector, screen->name());
-                break;
-            }
-    }
+    if (outputs.window(projector) == nullptr) outputs.useScreen(projector, outputs.freeScreen());
     if (outputs.window(projector) == nullptr) outputs.showInWindow(projector);
 }
 

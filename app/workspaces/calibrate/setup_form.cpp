@@ -5,8 +5,10 @@
 #include <filesystem>
 
 #include <QAbstractItemView>
+#include <QGuiApplication>
 #include <QHBoxLayout>
 #include <QPointer>
+#include <QScreen>
 #include <QSignalBlocker>
 #include <QVBoxLayout>
 
@@ -106,6 +108,22 @@ void SetupForm::addSource(QVBoxLayout& column) {
     connect(&parts_.studio.document, &StudioDocument::changed, this, [this](StateParts changed) {
         if (changed & StatePart::installation) listProjectors();
     });
+    screen_ = new QComboBox(this);
+    screen_->setObjectName("calibrate.screen");
+    screen_->setToolTip("The screen that is the projector; it shows its number there once it is chosen");
+    screen_->setSizeAdjustPolicy(QComboBox::AdjustToMinimumContentsLengthWithIcon);
+    screen_->setMinimumContentsLength(8);
+    screenRow_ = makeRow("Projector a&t", screen_, this);
+    column.addWidget(screenRow_);
+    ProjectorOutputs& outputs = parts_.studio.outputs;
+    connect(screen_, &QComboBox::activated, this, [this, &outputs] {
+        const std::size_t projector = parts_.service.projector();
+        outputs.useScreen(projector, screen_->currentData().toString());
+        if (ProjectorWindow* shown = outputs.window(projector)) shown->identify();
+        listScreens();
+    });
+    connect(&outputs, &ProjectorOutputs::changed, this, [this] { listScreens(); });
+    connect(qGuiApp, &QGuiApplication::screenAdded, this, [this] { listScreens(); });
     folder_ = new QPushButton(this);
     folder_->setObjectName("calibrate.folder");
     folder_->setToolTip("In it one folder for each pose, each with the images of all patterns in their order");
@@ -275,6 +293,20 @@ void SetupForm::listProjectors() {
     installedRow_->setVisible(projectors.size() > 1);
 }
 
+/// Those of this machine, with their pixels.
+void SetupForm::listScreens() {
+    const QSignalBlocker quiet(screen_);
+    const QString chosen = parts_.studio.outputs.screenOf(parts_.service.projector());
+    screen_->clear();
+    screen_->addItem("Choose a screen", QString());
+    for (const QScreen* screen : QGuiApplication::screens()) {
+        const QSize pixels = ProjectorOutputs::pixelsOf(*screen);
+        screen_->addItem(QString("%1, %2 × %3").arg(screen->name()).arg(pixels.width()).arg(pixels.height()),
+                         screen->name());
+    }
+    screen_->setCurrentIndex(chosen.isEmpty() ? 0 : std::max(0, screen_->findData(chosen)));
+}
+
 /// Where images were taken before, a file can say what each shows.
 void SetupForm::listPatterns() {
     const CalibrationSetup& setup = parts_.service.state().setup;
@@ -313,6 +345,7 @@ void SetupForm::listCameras() {
 
 void SetupForm::searchCameras() {
     search_->setEnabled(false);
+    search_->setText("Searching...");
     parts_.studio.jobs.run<std::vector<CameraInfo>>(
         "calibrate", "Looking for cameras", [](const Progress&) { return listGenicamCameras(); },
         [form = QPointer(this)](const std::vector<CameraInfo>& found) {
@@ -323,7 +356,9 @@ void SetupForm::searchCameras() {
             form->listCameras();
         },
         [form = QPointer(this)](const std::exception&) {
-            if (form) form->search_->setEnabled(true);
+            if (!form) return;
+            form->search_->setEnabled(true);
+            form->search_->setText("Search again");
         });
 }
 
@@ -372,6 +407,8 @@ void SetupForm::refresh() {
     height_->setValue(setup.projector.height);
     if (!pattern_->view()->isVisible()) listPatterns();
     if (!installed_->view()->isVisible()) listProjectors();
+    screenRow_->setVisible(setup.way == CaptureWay::camera || byHand);
+    if (!screen_->view()->isVisible()) listScreens();
     posesRow_->setVisible(!folder);
     poses_->setValue(setup.poses);
     setEnabled(state.work == CalibrationState::Work::none);

@@ -31,6 +31,7 @@ private:
     void listProjectors();
     void listPatterns();
     void listCameras();
+    void listScreens();
     void searchCameras();
     void refresh();
     void edit(const std::function<void(CalibrationSetup&)>& change);
@@ -40,7 +41,9 @@ private:
     QLabel* wayWords_ = nullptr;
     QWidget* installedRow_ = nullptr;
     QComboBox* installed_ = nullptr; ///< the room's projectors
-    QWidget* rest_ = nullptr;        ///< what a board is calibrated with
+    QWidget* screenRow_ = nullptr;
+    QComboBox* screen_ = nullptr; ///< at which the projector is
+    QWidget* rest_ = nullptr;     ///< what a board is calibrated with
     QPushButton* folder_ = nullptr;
     QWidget* cameraRow_ = nullptr;
     QComboBox* camera_ = nullptr;
