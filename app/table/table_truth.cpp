@@ -40,7 +40,7 @@ void putUp(CalibratedCamera& camera, std::mt19937& engine) {
 
 } // namespace
 
-TableTruth drawTruth(const TableOrder& order, std::shared_ptr<const Rig> rig) {
+TableTruth drawTruth(const TableOrder& order, const std::shared_ptr<const Rig>& rig) {
     if (order.screens.empty())
         throw InvalidInput("table", "there is no screen that a projector could show", "name one by --screen");
     if (order.cameras < 1 || static_cast<std::size_t>(order.cameras) > order.screens.size())

@@ -34,7 +34,7 @@ struct TableOrder {
 /// a little turned and shifted from where they are usually put; everything else as `trueRoom` draws it. The same for
 /// the same order. Throws InvalidInput without a screen, with more cameras than projectors, or for a board that is
 /// none.
-[[nodiscard]] TableTruth drawTruth(const TableOrder& order, std::shared_ptr<const Rig> rig);
+[[nodiscard]] TableTruth drawTruth(const TableOrder& order, const std::shared_ptr<const Rig>& rig);
 
 /// For whoever judges: the installation, seed, rig and board. Throws DeviceError where the disk refuses.
 void writeTruth(const TableTruth& truth, const std::filesystem::path& file);

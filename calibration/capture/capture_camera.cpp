@@ -58,7 +58,7 @@ public:
         for (int skipped = 0; skipped < kMostSkipped; ++skipped) {
             progress.throwIfCancelled();
             const Microseconds asked = clock_.now();
-            const cv::Mat picture = read();
+            cv::Mat picture = read();
             const Microseconds arrived = clock_.now();
             const Microseconds told(static_cast<std::int64_t>(1e3 * capture_.get(cv::CAP_PROP_POS_MSEC)));
             // Drivers tell by the same clock when a frame began or ended; where it ended, its exposure began up to a

@@ -1,6 +1,7 @@
 #include "devices/simulator/board_at_port.h"
 
 #include <algorithm>
+#include <iterator>
 #include <span>
 
 #include "core/base/error.h"
@@ -53,7 +54,8 @@ void BoardAtPort::pass() {
 
 void BoardAtPort::takeFrames() {
     for (;;) {
-        const auto begin = std::ranges::search(waiting_, std::vector<std::uint8_t>{0x55, 0x55}).begin();
+        constexpr std::uint8_t kHead[] = {0x55, 0x55};
+        const auto begin = std::search(waiting_.begin(), waiting_.end(), std::begin(kHead), std::end(kHead));
         waiting_.erase(waiting_.begin(), begin);
         if (waiting_.size() < frameBytes(waiting_)) return;
         const auto end = waiting_.begin() + static_cast<std::ptrdiff_t>(frameBytes(waiting_));

@@ -261,7 +261,7 @@ TEST_F(TableProgram, ProjectorIsCalibratedInTheWindowByTheCameraOfTheTable) {
                 const auto* next = window.findNow<QAbstractButton>("calibrate.card.next");
                 return next && next->text().startsWith(words);
             },
-            120s);
+            300s);
     };
     for (int k = 1; k <= 4; ++k) {
         ASSERT_TRUE(offers(QString("Photograph pose %1").arg(k))) << story();
