@@ -16,6 +16,7 @@
 #include "calibration/report/report_page.h"
 #include "calibration/solve/crosshair_calibration.h"
 #include "calibration/solve/crosshair_points.h"
+#include "calibration/tracking/board_page.h"
 #include "core/base/atomic_file.h"
 #include "core/base/error.h"
 #include "core/rig/rig_file.h"
@@ -296,6 +297,17 @@ void addCalibrateCommands(CLI::App& app, Session& session) {
     command->add_option("--count", wanted->most, "How many at most")->capture_default_str()->check(CLI::Range(6, 64));
     command->add_flag("--json", wanted->json, "Print one JSON value");
     command->callback([wanted] { points(*wanted); });
+
+    auto printed = std::make_shared<std::pair<std::string, std::string>>();
+    command = group->add_subcommand("board", "Write a board to print, as PDF of true size");
+    command->add_option("board", printed->first, kBoardHelp)->required();
+    command->add_option("output", printed->second, "PDF to write, or - for standard output")->required();
+    command->callback([printed] {
+        checkOutput(printed->second, {});
+        writeOutput(printed->second, bytesOfText(calibrationBoardPdf(parseCalibrationBoard(printed->first))));
+        if (printed->second != "-") std::printf("%s: print it at 100 %%\n", printed->second.c_str());
+        finishOutput();
+    });
 
     auto alone = std::make_shared<CalibrateArguments>();
     command = group->add_subcommand("intrinsics", "A camera alone, from pictures of a board");

@@ -1,10 +1,14 @@
 #include "app/workspaces/calibrate/calibrate_commands.h"
 
+#include <span>
+
 #include <QApplication>
 #include <QDate>
 
 #include "app/workspaces/calibrate/error_map_view.h"
 #include "app/workspaces/common/export_dialogs.h"
+#include "calibration/tracking/board_page.h"
+#include "core/base/atomic_file.h"
 
 namespace lumorph::studio {
 namespace {
@@ -139,6 +143,18 @@ void askToKeepRecording(const CalibrateParts& parts, std::size_t link) {
         QApplication::activeWindow(), parts.studio.settings, "chain.keep", "A new folder for the recording",
         QString("%1-%2").arg(chainLinks()[link].key, QDate::currentDate().toString(Qt::ISODate)),
         [parts, link](const QString& folder) { parts.chain.keepRecording(link, folder.toStdString()); }, "Keep");
+}
+
+void askToPrintBoard(const CalibrateParts& parts) {
+    askFile(QApplication::activeWindow(), parts.studio.settings, "calibrate.board", "Write the board to print", "board",
+            {{"PDF of true size", "pdf"}}, [parts](const QString& file) {
+                try {
+                    const std::string pdf = calibrationBoardPdf(parts.service.state().setup.board);
+                    writeFileAtomically(file.toStdString(), std::as_bytes(std::span(pdf)));
+                } catch (const std::exception& error) {
+                    parts.studio.notices.post("calibrate", noticeOf(error));
+                }
+            });
 }
 
 void askForSaved(const CalibrateParts& parts) {

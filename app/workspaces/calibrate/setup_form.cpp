@@ -224,6 +224,12 @@ void SetupForm::addBoard(QVBoxLayout& column) {
         dictionary_->addItem(QString::fromStdString(name), QString::fromStdString(name));
     dictionaryRow_ = makeRow("&Markers", dictionary_, this);
     column.addWidget(dictionaryRow_);
+    auto* print = new QPushButton("Board to print...", this);
+    print->setObjectName("calibrate.board.print");
+    print->setToolTip("A page as PDF, at true size, with a line to check the print by. Glue it to glass or a stiff "
+                      "panel, and measure it: printers stretch");
+    connect(print, &QPushButton::clicked, this, [this] { askToPrintBoard(parts_); });
+    column.addWidget(print);
     connect(dictionary_, &QComboBox::activated, this, [this] {
         edit([this](CalibrationSetup& setup) {
             setup.board.dictionary = dictionary_->currentData().toString().toStdString();
