@@ -15,6 +15,7 @@
 #include <QGuiApplication>
 #include <QScreen>
 #include <QTimer>
+#include <opencv2/imgproc.hpp>
 
 #include "app/studio/calibration/calibration_work.h"
 #include "app/studio/calibration/capture_bench.h"
@@ -48,6 +49,15 @@ bool isSizeOfScreen(cv::Size size) {
         const QSizeF pixels = screen->devicePixelRatio() * QSizeF(screen->size());
         return cv::Size(qRound(pixels.width()), qRound(pixels.height())) == size;
     });
+}
+
+/// What is as white as a camera can tell, in red: there may be more light than the picture says.
+cv::Mat withClippedTint(const cv::Mat& grey) {
+    static const cv::Scalar kRed(60, 70, 235);
+    cv::Mat tinted;
+    cv::cvtColor(grey, tinted, cv::COLOR_GRAY2BGR);
+    tinted.setTo(kRed, grey >= PictureLight::kClipped);
+    return tinted;
 }
 
 /// What came of reading or solving: a refusal is a result too.
@@ -468,7 +478,8 @@ void CalibrationService::look() {
             const std::scoped_lock lock(bench->mutex);
             const cv::Mat picture = bench->look(progress);
             sight.camera = {picture.cols, picture.rows};
-            sight.picture = pictureOfMat(picture);
+            sight.light = lightOf(picture);
+            sight.picture = pictureOfMat(sight.light.clipped > 0.0 ? withClippedTint(picture) : picture);
             sight.corners = liveCorners(picture, board);
             bench->setBoard(board);
             bench->setWanted(wanted ? std::optional(wanted->cameraFromBoard) : std::nullopt);
@@ -515,6 +526,7 @@ void CalibrationService::takeSight(const std::shared_ptr<CaptureBench>& from, Li
         return;
     }
     sight.words = sight.corners.empty() ? tr("No board in sight") : tr("Board in sight");
+    sight.sharpest = std::max(live_.sharpest, sight.light.sharpness);
     live_ = std::move(sight);
     if (bench_->isLive() && active_) liveTimer_->start();
     if (isStale_) look();

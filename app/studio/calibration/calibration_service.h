@@ -18,6 +18,7 @@
 #include "app/studio/document/job_slots.h"
 #include "app/studio/document/studio_document.h"
 #include "calibration/capture/pattern_display.h"
+#include "calibration/capture/picture_light.h"
 #include "calibration/capture/pose_capture.h"
 #include "calibration/report/report_page.h"
 
@@ -39,6 +40,8 @@ struct LiveSight {
     std::vector<QPointF> corners; ///< of the board; empty where it is not found
     std::vector<QPointF> ghost;   ///< where the board should be next, its corners in turn; empty: no matter
     QString words;                ///< what it shows, or why there is none
+    PictureLight light;           ///< how it is exposed, and how sharp
+    double sharpest = 0.0;        ///< that was seen since the camera was opened
 };
 
 /// A calibration of projector and camera, step by step, without widgets: what is chosen, what was photographed or read,

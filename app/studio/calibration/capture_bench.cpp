@@ -10,6 +10,7 @@
 #include <opencv2/calib3d.hpp>
 #include <opencv2/imgproc.hpp>
 
+#include "calibration/capture/picture_light.h"
 #include "calibration/lab/lab_capture.h"
 #include "calibration/lab/true_room.h"
 #include "core/base/clock.h"
@@ -202,6 +203,7 @@ public:
     [[nodiscard]] cv::Mat look(const Progress& progress) override {
         if (!isLit_) display_->show(whiteOf(display_->size()), progress);
         isLit_ = true;
+        if (!std::exchange(isExposed_, true)) (void)findExposure(*camera_, progress); // held from now on
         cv::Mat picture = greyOf(camera_->grab(progress)).clone();
         size_ = picture.size();
         return picture;
@@ -226,6 +228,7 @@ private:
     std::function<void(const Shot&)> onShot_;
     std::unique_ptr<PoseCapture> capturer_;
     bool isLit_ = false;
+    bool isExposed_ = false;
     cv::Size size_;
 };
 

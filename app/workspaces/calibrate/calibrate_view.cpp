@@ -20,7 +20,8 @@ namespace {
 
 using Show = CalibrateSelection::Show;
 
-constexpr double kArrowShare = 0.06; // of the picture's width, for the longest arrow
+constexpr double kArrowShare = 0.06;     // of the picture's width, for the longest arrow
+constexpr double kClippedToTell = 0.001; // of the pixels
 
 StepCardText cardOf(const NextStep& next) {
     return {next.tone, next.title, next.text, next.button, next.what == NextStep::Do::stop};
@@ -236,9 +237,17 @@ private:
             marks.ghostText = QString("Pose %1").arg(freeNumber(state) + 1);
         }
         marks.words = live.words;
+        if (!live.picture.isNull() && live.sharpest > 0.0) {
+            marks.histogram.assign(live.light.histogram.begin(), live.light.histogram.end());
+            marks.light =
+                QString("Sharpness %1, best %2").arg(live.light.sharpness, 0, 'f', 1).arg(live.sharpest, 0, 'f', 1);
+            if (live.light.clipped >= kClippedToTell)
+                marks.light += QString("; %1 % clipped").arg(100.0 * live.light.clipped, 0, 'f', 1);
+        }
         legend_->setText(live.picture.isNull() ? QString()
                                                : "Dashed: where the board should be next. Green: where boards have "
-                                                 "been; together they should fill the picture.");
+                                                 "been; together they should fill the picture. Red: whiter than the "
+                                                 "camera can tell; expose for less.");
         const QString empty = state.setup.way == CaptureWay::folder ? "A folder has no live picture."
                               : live.words.isEmpty()                ? "No camera yet"
                                                                     : live.words;

@@ -1,5 +1,6 @@
 #include "app/workspaces/calibrate/capture_picture.h"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -37,6 +38,22 @@ void drawPlate(QPainter& painter, const QPointF& corner, const QString& words, c
     painter.drawRoundedRect(plate, 4.0, 4.0);
     painter.setPen(color);
     painter.drawText(plate, Qt::AlignCenter, words);
+}
+
+/// Roots of the shares: what is rare is to be seen as well. The last bar is what may be clipped.
+void drawHistogram(QPainter& painter, const QRectF& plate, const std::vector<float>& shares) {
+    const Palette& colors = currentPalette();
+    painter.setPen(Qt::NoPen);
+    painter.setBrush(withAlpha(colors.panel, 225));
+    painter.drawRoundedRect(plate, 4.0, 4.0);
+    const QRectF room = plate.adjusted(6.0, 6.0, -6.0, -4.0);
+    const float most = *std::ranges::max_element(shares);
+    const double width = room.width() / static_cast<double>(shares.size());
+    for (std::size_t i = 0; i < shares.size() && most > 0.0F; ++i) {
+        const double height = room.height() * std::sqrt(static_cast<double>(shares[i] / most));
+        painter.setBrush(i + 1 == shares.size() ? colors.danger : colors.accent);
+        painter.drawRect(QRectF(room.left() + width * static_cast<double>(i), room.bottom() - height, width, height));
+    }
 }
 
 } // namespace
@@ -107,6 +124,12 @@ void CapturePicture::paintEvent(QPaintEvent* /*event*/) {
         drawArrow(painter, on(arrow.at), arrow.error * scale * marks_.arrowScale);
     }
     painter.setClipping(false);
+    if (!marks_.histogram.empty()) {
+        const QRectF plate(area.bottomRight() - QPointF(148.0, 56.0), QSizeF(140.0, 48.0));
+        drawHistogram(painter, plate, marks_.histogram);
+        const double width = QFontMetricsF(painter.font()).horizontalAdvance(marks_.light) + 16.0;
+        drawPlate(painter, {plate.right() - width, plate.top() - 4.0}, marks_.light, colors.text);
+    }
     if (!marks_.words.isEmpty()) drawPlate(painter, area.bottomLeft() + QPointF(8.0, -8.0), marks_.words, colors.text);
 }
 

@@ -20,7 +20,9 @@ struct PictureMarks {
     };
     std::vector<Arrow> arrows; ///< drawn `arrowScale` times as long
     double arrowScale = 1.0;
-    QString words; ///< in the lower left corner
+    QString words;                ///< in the lower left corner
+    std::vector<float> histogram; ///< shares, dark to bright, in the lower right corner; empty: none
+    QString light;                ///< above it: how sharp, how much is clipped
 };
 
 /// A picture as large as fits, with marks over it.
