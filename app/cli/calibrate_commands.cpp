@@ -11,6 +11,7 @@
 #include "app/cli/calibrate_output.h"
 #include "app/cli/commands.h"
 #include "app/cli/pattern_arguments.h"
+#include "app/output/pattern_export.h"
 #include "calibration/doctor/capture_calibration.h"
 #include "calibration/report/calibration_file.h"
 #include "calibration/report/report_page.h"
@@ -43,6 +44,12 @@ struct CrosshairArguments {
     std::vector<double> place{0.0, 2.0, 0.4};
     int most = 8;
     bool json = false;
+};
+
+struct PatternsToShow {
+    std::string folder, projector;
+    PatternArguments patterns;
+    double seconds = 2.0;
 };
 
 nlohmann::json intrinsicsJson(const ProcamCalibration& result) {
@@ -306,6 +313,22 @@ void addCalibrateCommands(CLI::App& app, Session& session) {
         checkOutput(printed->second, {});
         writeOutput(printed->second, bytesOfText(calibrationBoardPdf(parseCalibrationBoard(printed->first))));
         if (printed->second != "-") std::printf("%s: print it at 100 %%\n", printed->second.c_str());
+        finishOutput();
+    });
+
+    auto shown = std::make_shared<PatternsToShow>();
+    command = group->add_subcommand("patterns", "Write patterns as pictures and as a film, to photograph them by hand");
+    command->add_option("folder", shown->folder, "A new folder")->required();
+    command->add_option("--projector", shown->projector, "The projector's size in pixels, such as 1024x768")
+        ->required();
+    shown->patterns.addTo(*command);
+    command->add_option("--seconds", shown->seconds, "How long each stands in the film")->capture_default_str();
+    command->callback([shown, &session] {
+        const CaptureOrder order = shown->patterns.orderFor(parseProjectorSize(shown->projector));
+        writePatterns(order, shown->folder, shown->seconds, session.progress());
+        std::printf("%s: %zu patterns; photograph each once a pose, in this order, and calibrate with --order %s\n",
+                    shown->folder.c_str(), order.images.size(),
+                    (std::filesystem::path(shown->folder) / "order.txt").c_str());
         finishOutput();
     });
 

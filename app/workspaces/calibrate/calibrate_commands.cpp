@@ -5,6 +5,7 @@
 #include <QApplication>
 #include <QDate>
 
+#include "app/output/pattern_export.h"
 #include "app/workspaces/calibrate/error_map_view.h"
 #include "app/workspaces/common/export_dialogs.h"
 #include "calibration/tracking/board_page.h"
@@ -155,6 +156,25 @@ void askToPrintBoard(const CalibrateParts& parts) {
                     parts.studio.notices.post("calibrate", noticeOf(error));
                 }
             });
+}
+
+void askToWritePatterns(const CalibrateParts& parts) {
+    constexpr double kPace = 2.0; // seconds: time for a finger on a shutter
+    askNewFolder(
+        QApplication::activeWindow(), parts.studio.settings, "calibrate.patterns", "A new folder for the patterns",
+        "patterns",
+        [parts](const QString& folder) {
+            const CalibrationSetup setup = parts.service.state().setup;
+            parts.studio.jobs.run<bool>(
+                "calibrate", "Writing the patterns",
+                [setup, folder](const Progress& progress) {
+                    writePatterns(orderOf(setup), folder.toStdString(), kPace, progress);
+                    return true;
+                },
+                [](bool) {},
+                [parts](const std::exception& error) { parts.studio.notices.post("calibrate", noticeOf(error)); });
+        },
+        "Write");
 }
 
 void askForSaved(const CalibrateParts& parts) {

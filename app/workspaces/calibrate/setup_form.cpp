@@ -129,6 +129,12 @@ void SetupForm::addSource(QVBoxLayout& column) {
     folder_->setToolTip("In it one folder for each pose, each with the images of all patterns in their order");
     connect(folder_, &QPushButton::clicked, this, [this] { askForImages(parts_); });
     column.addWidget(folder_);
+    patterns_ = new QPushButton("Patterns to show...", this);
+    patterns_->setObjectName("calibrate.patterns.write");
+    patterns_->setToolTip("All patterns as numbered pictures and as a film, to be shown by another program and "
+                          "photographed by hand; the order is written beside them");
+    connect(patterns_, &QPushButton::clicked, this, [this] { askToWritePatterns(parts_); });
+    column.addWidget(patterns_);
     camera_ = new QComboBox(this);
     camera_->setObjectName("calibrate.camera");
     cameraRow_ = makeRow("C&amera", camera_, this);
@@ -383,6 +389,7 @@ void SetupForm::refresh() {
                        : folder ? "One folder for each pose of the board, each with the photographs of all patterns."
                                 : "The patterns are shown in the projector's output window; the camera looks at them.");
     folder_->setVisible(folder);
+    patterns_->setVisible(folder);
     folder_->setText(setup.folder.empty() ? "Choose a folder..."
                                           : QString::fromStdString(setup.folder.filename().string()));
     for (QWidget* part : {cameraRow_, addressRow_, static_cast<QWidget*>(search_)})

@@ -45,6 +45,7 @@ private:
     QComboBox* screen_ = nullptr; ///< at which the projector is
     QWidget* rest_ = nullptr;     ///< what a board is calibrated with
     QPushButton* folder_ = nullptr;
+    QPushButton* patterns_ = nullptr;
     QWidget* cameraRow_ = nullptr;
     QComboBox* camera_ = nullptr;
     QWidget* addressRow_ = nullptr;
