@@ -326,6 +326,7 @@ void addCalibrateCommands(CLI::App& app, Session& session) {
     command->callback([shown, &session] {
         const CaptureOrder order = shown->patterns.orderFor(parseProjectorSize(shown->projector));
         writePatterns(order, shown->folder, shown->seconds, session.progress());
+        Session::endProgress();
         std::printf("%s: %zu patterns; photograph each once a pose, in this order, and calibrate with --order %s\n",
                     shown->folder.c_str(), order.images.size(),
                     (std::filesystem::path(shown->folder) / "order.txt").c_str());
