@@ -1,13 +1,7 @@
 #include <cmath>
-#include <fstream>
-#include <sstream>
 
 #include <QAbstractButton>
-#include <QComboBox>
 #include <QGuiApplication>
-#include <QJsonArray>
-#include <QJsonDocument>
-#include <QJsonObject>
 #include <QPainter>
 #include <QProcess>
 #include <QRasterWindow>
@@ -20,14 +14,12 @@
 #include "core/geometry/calibrated_camera.h"
 #include "core/loop/pose_stream.h"
 #include "core/rig/rig_file.h"
-#include "core/scene/installation_store.h"
 #include "core/scene/measured_servos.h"
 #include "devices/controllers/servo_link.h"
 #include "devices/trackers/tracker.h"
-#include "tests/core/temporary_folder.h"
 #include "tests/support/long_tests.h"
 #include "tests/ui/event_loop.h"
-#include "tests/ui/studio_window.h"
+#include "tests/ui/table_program.h"
 
 // The table behind its sockets, judged by its truth: light by the closed form of a ray and a plane.
 
@@ -66,49 +58,7 @@ private:
     QColor color_ = Qt::white;
 };
 
-class TableProgram : public testing::Test {
-protected:
-    void start(const QStringList& more = {}) {
-        const QString truthFile = QString::fromStdString(folder / "truth.json");
-        program.setProcessChannelMode(QProcess::ForwardedErrorChannel);
-        program.start(LUMORPH_BIN_DIR "/lumorph-table",
-                      QStringList{"--seed", "5", "--truth", truthFile} +
-                          (more.isEmpty() ? QStringList{"--camera-size", "640x512"} : more));
-        ready = readLine();
-        ASSERT_TRUE(ready.contains("cameras")) << "it did not start";
-        std::ifstream file(folder / "truth.json");
-        std::stringstream text;
-        text << file.rdbuf();
-        const auto json = QJsonDocument::fromJson(QByteArray::fromStdString(text.str())).object();
-        truth = parseInstallation(QJsonDocument(json["room"].toObject()).toJson().toStdString(), "truth");
-    }
-    ~TableProgram() override {
-        if (program.state() != QProcess::Running) return;
-        program.write("quit\n");
-        EXPECT_TRUE(program.waitForFinished(10'000));
-        EXPECT_EQ(program.exitCode(), 0);
-    }
-    [[nodiscard]] QJsonObject readLine() {
-        if (!eventually([&] { return program.canReadLine() || program.state() == QProcess::NotRunning; })) return {};
-        return QJsonDocument::fromJson(program.readLine()).object();
-    }
-    QJsonObject tell(const QString& line) {
-        program.write((line + "\n").toUtf8());
-        return readLine();
-    }
-    void does(const QString& line) {
-        const QJsonObject said = tell(line);
-        EXPECT_TRUE(said["ok"].toBool()) << line.toStdString() << ": " << said["error"].toString().toStdString();
-    }
-    [[nodiscard]] std::string address(const char* kind) const {
-        return ready["cameras"].toArray().first().toObject()[kind].toString().toStdString();
-    }
-
-    TemporaryFolder folder;
-    QProcess program;
-    QJsonObject ready;
-    Installation truth;
-};
+class TableProgramTest : public testing::Test, protected TableProgram {};
 
 /// Where a projector truly throws a pixel on the table.
 glm::dvec3 thrownTo(const CalibratedCamera& projector, const glm::dvec2& pixel) {
@@ -131,7 +81,7 @@ cv::Point2d brightest(const cv::Mat& picture) {
     return at / sum;
 }
 
-TEST_F(TableProgram, CamerasSeeWhatTheScreenShowsWhereItsTruthSays) {
+TEST_F(TableProgramTest, CamerasSeeWhatTheScreenShowsWhereItsTruthSays) {
     ASSERT_NO_FATAL_FAILURE(start());
     Thrown thrown;
     ASSERT_TRUE(QTest::qWaitForWindowExposed(&thrown));
@@ -163,7 +113,7 @@ TEST_F(TableProgram, CamerasSeeWhatTheScreenShowsWhereItsTruthSays) {
     }
 }
 
-TEST_F(TableProgram, ExposureGainAndWhatCoversTheScreenAreSeen) {
+TEST_F(TableProgramTest, ExposureGainAndWhatCoversTheScreenAreSeen) {
     ASSERT_NO_FATAL_FAILURE(start());
     Thrown thrown;
     ASSERT_TRUE(QTest::qWaitForWindowExposed(&thrown));
@@ -186,7 +136,7 @@ TEST_F(TableProgram, ExposureGainAndWhatCoversTheScreenAreSeen) {
     EXPECT_LT(mean(), 1.6 * once);
 }
 
-TEST_F(TableProgram, TrackerTellsWhereThingsTrulyAre) {
+TEST_F(TableProgramTest, TrackerTellsWhereThingsTrulyAre) {
     ASSERT_NO_FATAL_FAILURE(start());
     const auto tracker = openTracker(ready["tracker"].toString().toStdString(), {});
     const auto bodyOf = [&](const std::string& name) -> std::optional<Pose> {
@@ -223,9 +173,10 @@ glm::dmat4 fromOther(const CalibratedCamera& of, const CalibratedCamera& other) 
 }
 
 // By the mouse, through the camera's packets and the projector's screen; judged by what the table wrote.
-TEST_F(TableProgram, ProjectorIsCalibratedInTheWindowByTheCameraOfTheTable) {
+TEST_F(TableProgramTest, ProjectorIsCalibratedInTheWindowByTheCameraOfTheTable) {
     if (!longTests()) GTEST_SKIP() << "minutes of photographs: LUMORPH_LONG_TESTS=1";
-    ASSERT_NO_FATAL_FAILURE(start({"--camera-size", "1600x1280"})); // one pixel for each of the projector, nearly
+    ASSERT_NO_FATAL_FAILURE(
+        start({"--seed", "5", "--camera-size", "1600x1280"})); // one pixel for each of the projector, nearly
     TemporaryFolder session;
     {
         studio::Settings settings; // as a new user has it
@@ -237,21 +188,7 @@ TEST_F(TableProgram, ProjectorIsCalibratedInTheWindowByTheCameraOfTheTable) {
     StudioWindow window(session / "session", "scene");
     ASSERT_TRUE(eventually([&] { return window.studio().jobs.running().empty(); }, 60s));
     window.window().showWorkspace("calibrate");
-    window.click("calibrate.way.camera");
-    const auto choose = [&](const char* list, int index) {
-        auto* box = window.find<QComboBox>(list);
-        box->setCurrentIndex(index);
-        emit box->activated(index);
-    };
-    choose("calibrate.screen", 1); // the only one: the studio is on it, and asks
-    window.studio().notices.at("output").front().actions.front().run();
-    const auto shown = [&] { return window.studio().outputs.window(0); };
-    ASSERT_TRUE(eventually([&] { return shown() && shown()->calibrationProblem().isEmpty(); }, 20s))
-        << "the projector has its screen's pixels";
-    window.click("calibrate.camera.search");
-    const auto listed = [&] { return window.find<QComboBox>("calibrate.camera")->count() > 1; };
-    ASSERT_TRUE(eventually(listed, 20s));
-    choose("calibrate.camera", 1);
+    ASSERT_NO_FATAL_FAILURE(chooseScreenAndCamera(window));
     const auto story = [&] {
         return (window.text("calibrate.card.title") + ": " + window.text("calibrate.card.text")).toStdString();
     };
@@ -289,7 +226,7 @@ TEST_F(TableProgram, ProjectorIsCalibratedInTheWindowByTheCameraOfTheTable) {
                 57.29578 * std::acos(std::min(1.0, 0.5 * (turn[0][0] + turn[1][1] + turn[2][2] - 1.0))));
 }
 
-TEST_F(TableProgram, IsFoundByTheCommandThatListsCameras) {
+TEST_F(TableProgramTest, IsFoundByTheCommandThatListsCameras) {
     ASSERT_NO_FATAL_FAILURE(start());
     QProcess command;
     command.start(LUMORPH_BIN_DIR "/lumorph", {"cameras", "--json"});
