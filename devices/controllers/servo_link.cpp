@@ -87,6 +87,7 @@ struct ServoLink::Data {
     std::uint64_t stopsTaken = 0;
 
     std::atomic<bool> eventsToTell = false;
+    std::atomic<bool> isAlone = false; ///< the board is lost: no command can reach it
 
     void begin() {
         begun = true;
@@ -161,6 +162,7 @@ struct ServoLink::Data {
     }
     void publish(LinkStatus now) {
         const Microseconds time = SteadyClock{}.now();
+        isAlone = now.phase == LinkPhase::lost;
         const bool isNews = eventsToTell || toldPhase != now.phase || time - toldAt >= kTellChange;
         toldPhase = now.phase;
         {
@@ -173,11 +175,11 @@ struct ServoLink::Data {
         options.onChange();
     }
 
-    /// Changes the orders and wakes the thread.
-    template <typename Change> void order(Change change) {
+    /// Changes the orders and wakes the thread, unless that has time until it looks by itself.
+    template <typename Change> void order(Change change, bool hasTime = false) {
         const std::scoped_lock lock(mutex);
         change(orders);
-        if (!std::exchange(woken, true)) wake();
+        if (!hasTime && !std::exchange(woken, true)) wake();
     }
     void wake() {
         auto event = std::make_unique<QEvent>(kWake);
@@ -249,11 +251,13 @@ bool ServoLink::letGo(std::chrono::milliseconds atMost) {
 void ServoLink::command(std::span<const double> strokes) {
     const Microseconds now = SteadyClock{}.now();
     const std::uint64_t before = data_->stops;
-    data_->order([&](LinkOrders& all) {
-        if (!all.command) all.commandedAt = now;
-        all.commandStops = before;
-        all.command.emplace(strokes.begin(), strokes.end());
-    });
+    data_->order(
+        [&](LinkOrders& all) {
+            if (!all.command) all.commandedAt = now;
+            all.commandStops = before;
+            all.command.emplace(strokes.begin(), strokes.end());
+        },
+        data_->isAlone);
 }
 
 void ServoLink::wiggle(std::size_t servo) { data_->request(servo_input::Wiggle{servo}); }
