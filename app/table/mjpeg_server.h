@@ -20,7 +20,7 @@ public:
     MjpegServer(const MjpegServer&) = delete;
     MjpegServer& operator=(const MjpegServer&) = delete;
 
-    [[nodiscard]] std::string address() const { return "http://127.0.0.1:" + std::to_string(port_) + "/video"; }
+    [[nodiscard]] std::string address() const { return "http://127.0.0.1:" + std::to_string(port_) + "/lumorph-table"; }
 
 private:
     void serve(const std::stop_token& stop);

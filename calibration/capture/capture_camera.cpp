@@ -142,6 +142,11 @@ std::unique_ptr<CaptureCamera> openCaptureCamera(const std::string& path, cv::Si
     return std::make_unique<DriverCamera>(path, most);
 }
 
+bool isSimulatedCamera(const std::string& address) {
+    return address.starts_with("genicam://Aravis-Fake-") ||
+           (isMjpegAddress(address) && address.ends_with("/lumorph-table"));
+}
+
 std::unique_ptr<CaptureCamera> openLabCamera(BoardLab& lab) { return std::make_unique<LabCamera>(lab); }
 
 cv::Mat greyOf(const cv::Mat& picture) {

@@ -48,6 +48,9 @@ public:
 /// with what to do.
 [[nodiscard]] std::unique_ptr<CaptureCamera> openCaptureCamera(const std::string& path, cv::Size most = {1920, 1080});
 
+/// Whether an address is that of a camera which `lumorph-table` or Aravis poses as: what it tells is simulated.
+[[nodiscard]] bool isSimulatedCamera(const std::string& address);
+
 /// How cameras are opened, by their addresses; in any thread.
 using CameraOpener = std::function<std::unique_ptr<CaptureCamera>(const std::string& address)>;
 

@@ -23,6 +23,8 @@ constexpr double kLeastNoise = 0.4;   // grey levels: rounding alone makes 0.29
 constexpr double kLeastLight = 4.0;   // grey levels
 constexpr double kResolved = 0.45;    // contrast that the median pixel shows of a stripe that the camera resolves
 constexpr float kLeastDirect = 0.25F; // of the light that is switched on and off
+constexpr int kCoarser = 2;           // bits, that are tried where the finest stripes are narrower than pixels
+constexpr double kSkips = 0.02;       // of neighbours in neighbouring stripes: noise makes fewer
 constexpr float kSameEdge = 2.0F;     // camera pixels within which crossings of one edge are noise of each other
 constexpr float kOrderDoubt = 0.35F;  // periods by which a cue may miss the next finer set
 constexpr double kMedianToSigma = 1.4826;
@@ -171,6 +173,9 @@ struct DecodedAxis {
     int cell = 1;
 };
 
+/// Not by !=: for OpenCV, where it works with vectors, no number differs from a NaN.
+cv::Mat1b unknownIn(const cv::Mat1f& coordinate) { return ~(coordinate == coordinate); }
+
 /// Reads the Gray code of one axis.
 class GrayReader {
 public:
@@ -192,7 +197,23 @@ public:
     }
 
     [[nodiscard]] DecodedAxis read() {
+        DecodedAxis axis = readStripes();
+        // Where stripes are narrower than a pixel, as on what is tilted away, some are passed over; coarser ones tell.
+        const int count = static_cast<int>(differences_.size());
+        for (int tries = 0; tries < kCoarser && first_ + 2 < count && skips_ > kSkips * steps_; ++tries) {
+            ++first_;
+            const DecodedAxis coarser = readStripes();
+            const cv::Mat1b unknown = unknownIn(axis.coordinate);
+            coarser.coordinate.copyTo(axis.coordinate, unknown);
+            coarser.contrast.copyTo(axis.contrast, unknown);
+        }
+        return axis;
+    }
+
+private:
+    [[nodiscard]] DecodedAxis readStripes() {
         DecodedAxis axis{cv::Mat1f(size_, kUnknown), cv::Mat1f::zeros(size_), cv::Mat1f::zeros(size_), 1 << first_};
+        steps_ = skips_ = 0.0;
         codes_ = cv::Mat1i(size_, -1);
         for (int y = 0; y < size_.height; ++y)
             for (int x = 0; x < size_.width; ++x) readPixel(axis, y, x);
@@ -202,7 +223,6 @@ public:
         return axis;
     }
 
-private:
     [[nodiscard]] float difference(int bit, int y, int x) const {
         return differences_[static_cast<std::size_t>(bit)](y, x);
     }
@@ -256,7 +276,7 @@ private:
         int crossings = 1;
     };
 
-    void interpolate(DecodedAxis& axis, bool alongRows, int line) const {
+    void interpolate(DecodedAxis& axis, bool alongRows, int line) {
         const int length = alongRows ? size_.width : size_.height;
         const auto pixel = [&](int i) { return alongRows ? cv::Point(i, line) : cv::Point(line, i); };
         const auto width = static_cast<float>(axis.cell);
@@ -272,6 +292,7 @@ private:
             const std::optional<Edge> edge = edgeBetween(pixel(i), pixel(i + 1), static_cast<float>(i), width);
             const int a = codes_(pixel(i));
             const int b = codes_(pixel(i + 1));
+            if (a >= 0 && b >= 0) (std::abs(a - b) > 1 ? skips_ : steps_) += a != b;
             if (edge && last && edge->coordinate == last->coordinate && edge->at - last->at < kSameEdge) {
                 const auto n = static_cast<float>(last->crossings);
                 last->at = (n * last->at + edge->at) / (n + 1.0F);
@@ -302,8 +323,9 @@ private:
     }
 
     cv::Size size_;
-    float doubt_;   ///< a difference below is no more than noise
-    int first_ = 0; ///< finest bit that the camera resolves
+    float doubt_;                      ///< a difference below is no more than noise
+    int first_ = 0;                    ///< finest bit that the camera resolves
+    double steps_ = 0.0, skips_ = 0.0; ///< neighbours in neighbouring stripes, and in stripes further apart
     cv::Mat1f light_;
     std::vector<cv::Mat1s> differences_;
     cv::Mat1i codes_; ///< of stripes of the finest bit that is resolved; -1: not known
@@ -437,7 +459,7 @@ DecodedView decodeView(const std::vector<cv::Mat>& images, const CaptureOrder& o
     view.global = cv::max(cv::Mat1f(light - view.direct), 0.0F);
     cv::Mat1f share = cv::min(columns.contrast, rows.contrast) / cv::max(view.direct, 1.0F);
     view.confidence = cv::min(share, 1.0F);
-    view.confidence.setTo(0.0F, (view.column != view.column) | (view.row != view.row));
+    view.confidence.setTo(0.0F, unknownIn(view.column) | unknownIn(view.row));
     return view;
 }
 

@@ -61,6 +61,11 @@ struct TrackerStatus {
     std::shared_ptr<const TrackerCamera> camera; ///< null for what is no camera
 };
 
+/// Whether a tracker is simulated, in the studio or by `lumorph-table`: by its address, and as what it names itself.
+[[nodiscard]] constexpr bool isSimulatedTracker(std::string_view uri, std::string_view source) noexcept {
+    return uri.starts_with("sim://") || source.starts_with("Lumorph table");
+}
+
 /// A source of poses, in a thread of its own. Everything may be called from any thread.
 class Tracker {
 public:

@@ -71,6 +71,23 @@ TEST(PatternDecoder, GrayCodeIsReadToAFractionOfAProjectorPixel) {
     }
 }
 
+// A camera of fewer pixels than the projector, and a board that is tilted away from it.
+TEST(PatternDecoder, StripesNarrowerThanPixelsAreReadFromCoarserOnes) {
+    ProcamSetup setup = ProcamSetup::usual();
+    setup.projector.size = {640, 480};
+    setup.projector.focal *= 2.5;
+    setup.projector.principal = 2.5 * setup.projector.principal + 0.75;
+    for (const std::size_t pose : {0U, 1U, 3U, 5U}) {
+        const auto images =
+            greysOf(photographAll(setup, setup.cameraFromBoard[pose], grayCodeLights(setup.projector.size), 7));
+        const DecodedView decoded = decodeView(images, parsePattern("graycode", {640, 480}));
+        const DecodeTruth truth = compare(setup, decoded, setup.cameraFromBoard[pose]);
+        EXPECT_GT(truth.known, 0.85) << pose;
+        EXPECT_LT(quantile(truth.errors, 0.5), 0.3) << pose;
+        EXPECT_LT(quantile(truth.errors, 0.99), 1.2) << pose; // of a camera pixel and a half
+    }
+}
+
 // Within a projector pixel all light is the same, and its phase that of the pixel's centre: half a pixel off at most.
 TEST(PatternDecoder, PhaseShiftIsReadToAFractionOfAProjectorPixel) {
     const ProcamSetup setup = ProcamSetup::usual();

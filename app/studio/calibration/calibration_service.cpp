@@ -231,7 +231,7 @@ void CalibrationService::beginAnew() {
 /// Those that come now get a folder of their own.
 void CalibrationService::forgetPoses() {
     jobs_.stop("save");
-    store_ = std::make_shared<PoseStore>(state_.setup.way == CaptureWay::lab);
+    store_ = std::make_shared<PoseStore>(isSimulatedWay(state_.setup));
     state_.poses.clear();
     passedOver_.clear();
     state_.isReadWhole = false;
@@ -728,7 +728,7 @@ void CalibrationService::solve() {
             result->date = utcDate();
             result->setup = setup;
             result->isSimulated =
-                setup.way == CaptureWay::lab || (setup.way == CaptureWay::folder && isLabCapture(setup.folder));
+                isSimulatedWay(setup) || (setup.way == CaptureWay::folder && isLabCapture(setup.folder));
             result->plan = planOf(result->solved, flat, setup.board, *room, placement, progress.part(0.8, 0.9));
             result->next = suggestNextPose(result->solved, setup.board, {}, progress.part(0.9, 1.0));
             return Result(std::move(result));

@@ -3,6 +3,7 @@
 #include <QObject>
 #include <QStandardPaths>
 
+#include "calibration/capture/capture_camera.h"
 #include "core/base/error.h"
 
 namespace lumorph::studio {
@@ -25,6 +26,10 @@ QString sideText(double millimetres) { return QString::number(millimetres, 'g', 
 std::filesystem::path usualSaved() {
     const QString data = QStandardPaths::writableLocation(QStandardPaths::GenericDataLocation);
     return std::filesystem::path(data.toStdString()) / "lumorph" / "captures";
+}
+
+bool isSimulatedWay(const CalibrationSetup& setup) {
+    return setup.way == CaptureWay::lab || (setup.way == CaptureWay::camera && isSimulatedCamera(setup.camera));
 }
 
 CaptureWay keptWay(const Settings& settings) {

@@ -44,6 +44,9 @@ struct CalibrationSetup {
     bool operator==(const CalibrationSetup&) const = default;
 };
 
+/// Whether its pictures are the virtual lab's, or those of a camera that another program poses as.
+[[nodiscard]] bool isSimulatedWay(const CalibrationSetup& setup);
+
 /// What was chosen last for this way, or what is usual.
 [[nodiscard]] CalibrationSetup keptSetup(const Settings& settings, CaptureWay way);
 /// Where poses are saved unless somebody chooses another folder: in the user's data.

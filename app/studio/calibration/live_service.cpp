@@ -165,8 +165,12 @@ void LiveService::follow() {
     if (capture_->isComplete()) {
         const LivePlan plan = capture_->plan();
         const std::vector<LiveTake> takes = capture_->takes();
-        const bool isSimulated =
-            std::ranges::any_of(sources_, [](const auto& followed) { return followed.second.starts_with("sim://"); });
+        const bool isSimulated = std::ranges::any_of(sources_, [this](const auto& followed) {
+            const std::string& address = followed.second;
+            const auto& all = trackers_.trackers();
+            const auto tracker = std::ranges::find(all, address, [](const auto& one) { return one.status.address; });
+            return isSimulatedTracker(address, tracker == all.end() ? "" : tracker->status.source);
+        });
         end();
         emit finished(plan, takes, isSimulated);
         return;

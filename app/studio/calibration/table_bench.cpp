@@ -155,7 +155,8 @@ private:
 class TableBench final : public Bench {
 public:
     TableBench(const TableParts& parts, const Installation& room, bool isMoved)
-        : table_(parts, room), isSimulated_(isMoved && parts.devices->profile().address.starts_with("sim://")),
+        : table_(parts, room), isSimulated_(isSimulatedCamera(room.cameras.front().address) ||
+                                            (isMoved && parts.devices->profile().address.starts_with("sim://"))),
           camera_(room.cameras.front().address), board_(parts.board) {}
 
     [[nodiscard]] RecordingSource source() const override {
