@@ -20,8 +20,12 @@ namespace lumorph::table {
 
 namespace {
 
-/// A picture can be worked out so often on one core.
-constexpr std::uint32_t kFramePeriod = 100'000; // us
+/// Microseconds in which a picture of so many pixels can be worked out on one core, with time to spare.
+std::uint32_t framePeriod(guint32 width, guint32 height) {
+    constexpr double kPixel = 0.076;
+    constexpr double kShortest = 33'333.0; // 30 pictures a second
+    return static_cast<std::uint32_t>(std::max(kShortest, kPixel * width * height));
+}
 
 /// 127.0.0.1 is there; others have to be given to the loopback, which only root may. Whether it took them shows when
 /// the camera starts.
@@ -72,7 +76,8 @@ struct GigeCamera::Data {
         arv_fake_camera_write_register(sensor, ARV_FAKE_CAMERA_REGISTER_SENSOR_HEIGHT, height);
         arv_fake_camera_write_register(sensor, ARV_FAKE_CAMERA_REGISTER_WIDTH, width);
         arv_fake_camera_write_register(sensor, ARV_FAKE_CAMERA_REGISTER_HEIGHT, height);
-        arv_fake_camera_write_register(sensor, ARV_FAKE_CAMERA_REGISTER_ACQUISITION_FRAME_PERIOD_US, kFramePeriod);
+        arv_fake_camera_write_register(sensor, ARV_FAKE_CAMERA_REGISTER_ACQUISITION_FRAME_PERIOD_US,
+                                       framePeriod(width, height));
         arv_fake_camera_set_fill_pattern(sensor, &Data::fill, this);
     }
     void unplug() {

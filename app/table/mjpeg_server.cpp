@@ -2,8 +2,11 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <chrono>
 #include <cstdint>
+#include <list>
+#include <thread>
 #include <vector>
 
 #include <arpa/inet.h>
@@ -56,7 +59,11 @@ MjpegServer::~MjpegServer() {
 }
 
 void MjpegServer::serve(const std::stop_token& stop) {
-    std::vector<std::jthread> listeners; // as many programs as want to see it
+    struct Listener {
+        std::atomic<bool> hasEnded{false};
+        std::jthread thread;
+    };
+    std::list<Listener> listeners; // as many programs as want to see it
     while (!stop.stop_requested()) {
         pollfd one{socket_, POLLIN, 0};
         if (::poll(&one, 1, 50) <= 0) continue;
@@ -66,9 +73,12 @@ void MjpegServer::serve(const std::stop_token& stop) {
         const timeval patience{1, 0};
         ::setsockopt(listener, SOL_SOCKET, SO_RCVTIMEO, &patience, sizeof patience);
         ::setsockopt(listener, SOL_SOCKET, SO_SNDTIMEO, &patience, sizeof patience);
-        listeners.emplace_back([this, listener](const std::stop_token& its) {
-            send(listener, its);
+        listeners.remove_if([](const Listener& past) { return past.hasEnded.load(); });
+        Listener& its = listeners.emplace_back();
+        its.thread = std::jthread([this, listener, &its](const std::stop_token& ends) {
+            send(listener, ends);
             ::close(listener);
+            its.hasEnded = true;
         });
     }
 }

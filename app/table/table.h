@@ -23,7 +23,7 @@ struct Standing {
     std::vector<double> strokes;
     std::optional<glm::dmat4> worldFromBoard;
     std::optional<glm::dvec3> hand;
-    bool isCovered = false; ///< the cameras' lenses
+    bool isCovered = false; ///< the projectors' lenses
     bool operator==(const Standing&) const = default;
 };
 

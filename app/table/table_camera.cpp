@@ -124,7 +124,8 @@ struct TableCamera::Data {
     std::mutex mutex;
     Standing stood;
     std::unique_ptr<Lab> lab;
-    LabSight sight;
+    LabSight sight;                                   ///< with one ray a pixel while something moves
+    std::shared_ptr<const Image> none;                ///< of a projector whose lens is covered
     std::vector<std::shared_ptr<const Image>> thrown; ///< by the lab's projectors now
     double levels = 1.0;                              ///< grey of radiance 1 in the usual time
     Microseconds working{0};                          ///< that a picture takes to be worked out
@@ -170,6 +171,7 @@ TableCamera::TableCamera(const Table& table, const ScreenEye& eye, std::size_t c
                      .stood = {},
                      .lab = {},
                      .sight = {},
+                     .none = std::make_shared<const Image>(),
                      .thrown = {},
                      .noise = {},
                      .corners = {},
@@ -189,22 +191,24 @@ cv::Mat1b TableCamera::photograph(double exposureSeconds, double gainDecibels) {
     Data& data = *data_;
     std::unique_lock lock(data.mutex);
     const Microseconds late(std::llround(1e6 * data.table.truth().room.predictionSeconds));
+    // New rays first, which take longer than a picture: time goes on meanwhile.
+    const Standing now = data.table.at(data.clock.now());
+    if (!isStill(now, data.stood))
+        data.stand(now);
+    else if (data.sight.samples == 1)
+        data.sight = data.lab->finer(data.camera, data.sight);
     // The light of when it will be ready: whoever gets it takes its exposure to have ended just before it came. What
     // the screens show then need not be known yet, as its light comes late.
     const Microseconds begun = data.clock.now(), ready = begun + data.working;
     const Microseconds middle = ready - Microseconds(std::llround(0.5e6 * exposureSeconds));
-    const Standing now = data.table.at(middle);
-    const bool isAsBefore = isStill(now, data.stood);
-    if (!isAsBefore) data.stand(now);
     const Microseconds shown = middle - late;
     for (std::size_t k = 0; k < data.thrown.size(); ++k) {
-        auto picture = data.eye.at(k, shown).picture;
+        auto picture = now.isCovered ? data.none : data.eye.at(k, shown).picture;
         if (picture == data.thrown[k]) continue;
         data.lab->show(k, *picture);
         data.thrown[k] = std::move(picture);
     }
-    cv::Mat1f light(data.size(), 0.0F);
-    if (!now.isCovered) light = lightIn(*data.lab, data.sight);
+    cv::Mat1f light = lightIn(*data.lab, data.sight);
     const double grey = data.levels * exposureSeconds / data.options.usualSeconds * std::pow(10.0, gainDecibels / 20.0);
     light = grey * light.mul(data.corners);
     if (data.options.blur > 0.0) cv::GaussianBlur(light, light, {}, data.options.blur);
@@ -223,9 +227,9 @@ cv::Mat1b TableCamera::photograph(double exposureSeconds, double gainDecibels) {
             to[x] =
                 cv::saturate_cast<std::uint8_t>(from[x] + dice[x] * std::sqrt(dark + shot * std::max(0.0F, from[x])));
     }
-    // The longest of late; new rays take longer, and are few.
+    // The longest of late.
     const Microseconds took = data.clock.now() - begun;
-    if (isAsBefore) data.working = std::min(late, std::max(took, data.working - data.working / 16));
+    data.working = std::min(late, std::max(took, data.working - data.working / 16));
     lock.unlock();
     std::this_thread::sleep_for(ready - begun - took);
     return picture;

@@ -92,6 +92,8 @@ struct Lab::Data {
     [[nodiscard]] LabSight::Gleam gleam(const Lamp& lamp, const Hit& hit) const;
     /// Rows [first, last) of what a lens sees; `sight` holds these rows alone.
     void look(const LabLens& lens, int samples, int first, int last, LabSight& sight) const;
+    void lookAt(const LabLens& lens, const glm::dvec2& at, std::size_t ray, LabSight& sight) const;
+    [[nodiscard]] bool isSmoothAt(const LabSight& once, int x, int y) const;
     [[nodiscard]] glm::vec3 pixel(const LabSight& sight, std::size_t index) const;
 };
 
@@ -148,14 +150,41 @@ void Lab::Data::look(const LabLens& lens, int samples, int first, int last, LabS
             for (int sample = 0; sample < samples * samples; ++sample, ++ray) {
                 const glm::dvec2 within((sample % samples + 0.5) / samples - 0.5,
                                         (sample / samples + 0.5) / samples - 0.5);
-                const auto direction = rayThrough(lens, glm::dvec2(x, y) + within);
-                const auto hit = direction ? trace(lens.position, *direction) : std::nullopt;
-                sight.surfaces[ray] = hit ? hit->surface : -1;
-                sight.triangles[ray] = hit ? hit->triangle : 0;
-                for (std::size_t lamp = 0; lamp < lamps.size(); ++lamp)
-                    sight.gleams[ray * lamps.size() + lamp] =
-                        hit && hit->surface >= 0 ? gleam(lamps[lamp], *hit) : LabSight::Gleam{};
+                lookAt(lens, glm::dvec2(x, y) + within, ray, sight);
             }
+}
+
+void Lab::Data::lookAt(const LabLens& lens, const glm::dvec2& at, std::size_t ray, LabSight& sight) const {
+    const auto direction = rayThrough(lens, at);
+    const auto hit = direction ? trace(lens.position, *direction) : std::nullopt;
+    sight.surfaces[ray] = hit ? hit->surface : -1;
+    sight.triangles[ray] = hit ? hit->triangle : 0;
+    for (std::size_t lamp = 0; lamp < lamps.size(); ++lamp)
+        sight.gleams[ray * lamps.size() + lamp] =
+            hit && hit->surface >= 0 ? gleam(lamps[lamp], *hit) : LabSight::Gleam{};
+}
+
+/// A straight edge that passes between a pixel's middle and one of its rays also passes between the middle and a
+/// neighbour's.
+bool Lab::Data::isSmoothAt(const LabSight& once, int x, int y) const {
+    constexpr float kBent = 0.1F; // projector pixels, between a pixel and the middle of its neighbours
+    if (x == 0 || y == 0 || x + 1 == once.size.x || y + 1 == once.size.y) return false;
+    const std::size_t row = static_cast<std::size_t>(once.size.x);
+    const std::size_t ray = static_cast<std::size_t>(y) * row + static_cast<std::size_t>(x);
+    for (const std::size_t step : {std::size_t{1}, row}) {
+        if (once.surfaces[ray - step] != once.surfaces[ray] || once.surfaces[ray + step] != once.surfaces[ray])
+            return false;
+        for (std::size_t lamp = 0; lamp < lamps.size(); ++lamp) {
+            const LabSight::Gleam& before = once.gleams[(ray - step) * lamps.size() + lamp];
+            const LabSight::Gleam& here = once.gleams[ray * lamps.size() + lamp];
+            const LabSight::Gleam& after = once.gleams[(ray + step) * lamps.size() + lamp];
+            const bool isLit = here.share > 0.0F;
+            if ((before.share > 0.0F) != isLit || (after.share > 0.0F) != isLit) return false;
+            const glm::vec2 bent = before.pixel + after.pixel - 2.0F * here.pixel;
+            if (isLit && glm::dot(bent, bent) > kBent * kBent) return false;
+        }
+    }
+    return true;
 }
 
 glm::vec3 Lab::Data::pixel(const LabSight& sight, std::size_t index) const {
@@ -274,6 +303,38 @@ LabSight Lab::look(const CalibratedCamera& observer, int samples) const {
         std::copy(row.triangles.begin(), row.triangles.end(), sight.triangles.begin() + first);
         std::copy(row.gleams.begin(), row.gleams.end(),
                   sight.gleams.begin() + first * static_cast<std::ptrdiff_t>(data_->lamps.size()));
+    });
+    return sight;
+}
+
+LabSight Lab::finer(const CalibratedCamera& observer, const LabSight& once) const {
+    const std::size_t count = data_->lamps.size();
+    if (once.samples != 1 || once.size != observer.size || once.gleams.size() != once.surfaces.size() * count)
+        throw InvalidInput("sight of the lab", "it is another observer's", "look again, with one ray a pixel");
+    const LabLens lens = lensOf(observer, "observer of the lab");
+    LabSight sight = emptySight(lens.size, 2, count);
+    const auto row = static_cast<std::size_t>(lens.size.x);
+    tbb::parallel_for(0, lens.size.y, [&](int y) {
+        for (int x = 0; x < lens.size.x; ++x) {
+            const std::size_t middle = static_cast<std::size_t>(y) * row + static_cast<std::size_t>(x);
+            const bool isSmooth = data_->isSmoothAt(once, x, y);
+            for (int sample = 0; sample < 4; ++sample) {
+                const glm::vec2 within(sample % 2 == 0 ? -0.25F : 0.25F, sample < 2 ? -0.25F : 0.25F);
+                const std::size_t ray = 4 * middle + static_cast<std::size_t>(sample);
+                if (!isSmooth) {
+                    data_->lookAt(lens, glm::dvec2(x, y) + glm::dvec2(within), ray, sight);
+                    continue;
+                }
+                sight.surfaces[ray] = once.surfaces[middle];
+                sight.triangles[ray] = once.triangles[middle];
+                for (std::size_t lamp = 0; lamp < count; ++lamp) {
+                    const auto at = [&](std::size_t pixel) { return once.gleams[pixel * count + lamp].pixel; };
+                    LabSight::Gleam& gleam = sight.gleams[ray * count + lamp] = once.gleams[middle * count + lamp];
+                    gleam.pixel += 0.5F * within.x * (at(middle + 1) - at(middle - 1)) +
+                                   0.5F * within.y * (at(middle + row) - at(middle - row));
+                }
+            }
+        }
     });
     return sight;
 }

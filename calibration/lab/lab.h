@@ -76,6 +76,10 @@ public:
     /// `radiance` in two steps: where the rays go, and what light the present pictures send there.
     [[nodiscard]] LabSight look(const CalibratedCamera& observer, int samples = 2) const;
     [[nodiscard]] std::vector<glm::vec3> radiance(const LabSight& sight) const;
+    /// As `look` with 2 x 2 rays a pixel, of what a single ray a pixel found: a pixel whose neighbours are on the same
+    /// surface in the same light gets its rays between theirs, and only the others are looked at again. Throws
+    /// InvalidInput for a sight of another observer or more rays.
+    [[nodiscard]] LabSight finer(const CalibratedCamera& observer, const LabSight& once) const;
 
     struct Hit {
         int surface = -1;           ///< of LabWorld::surfaces; -1: a blocker

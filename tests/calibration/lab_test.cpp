@@ -351,6 +351,31 @@ TEST(Lab, ASightLitAgainIsTheSameView) {
     EXPECT_FALSE(before == lab.view(observer));
 }
 
+TEST(Lab, AFinerSightIsTheViewOfFourRaysAPixel) {
+    Image stripes({1280, 800});
+    for (int y = 0; y < 800; ++y)
+        for (int x = 0; x < 1280; ++x) {
+            const std::uint8_t grey = x / 3 % 2 == 0 ? 220 : 30;
+            stripes.at(x, y) = {grey, grey, grey, 255};
+        }
+    LabProjector lamp{projectorAbove(), stripes};
+    const Lab lab(
+        {{{table()}, {disc({0, 0.05, 0}, {0.3, 1, 0}, 0.05F), {1, 0.5F, 0.2F}}}, {}, {lamp}, glm::vec3(0.01F)});
+    const CalibratedCamera observer = lookingFrom({0.0, 0.5, 0.6}, {0, 0, 0}, {320, 200}, 300);
+    const LabSight once = lab.look(observer, 1);
+    const auto wanted = lab.radiance(observer, 2), finer = lab.radiance(lab.finer(observer, once)),
+               coarse = lab.radiance(once);
+    float worst = 0.0F, brightest = 0.0F, before = 0.0F;
+    for (std::size_t i = 0; i < wanted.size(); ++i) {
+        worst = std::max(worst, glm::distance(wanted[i], finer[i]));
+        before = std::max(before, glm::distance(wanted[i], coarse[i]));
+        brightest = std::max(brightest, glm::length(wanted[i]));
+    }
+    EXPECT_LT(worst, 0.02F * brightest);
+    EXPECT_GT(before, 0.3F * brightest) << "there are edges";
+    EXPECT_THROW((void)lab.finer(observer, lab.look(observer, 2)), InvalidInput);
+}
+
 TEST(Lab, AProjectorThatIsOffIsDark) {
     LabProjector lamp{projectorAbove(), filled({1280, 800}, 255)};
     lamp.projector.enabled = false;

@@ -208,6 +208,7 @@ void WholeChainAtTheTable::measureProjector() {
                    button() == "Use this calibration";
         };
         ASSERT_TRUE(eventually(ends, 240s)) << hand.story();
+        std::printf("board %d: %s\n", place, hand.story().c_str());
         if (button().startsWith(then)) ++pose; // another place for one that was refused
     }
     ASSERT_TRUE(hand.offers("Use this calibration")) << hand.story();
@@ -270,7 +271,7 @@ void WholeChainAtTheTable::measureMoving(const char* link) {
 
 TEST_F(WholeChainAtTheTable, IsMeasuredByTheMouseThroughTheSockets) {
     if (!longTests()) GTEST_SKIP() << "minutes of hands and servos: LUMORPH_LONG_TESTS=1";
-    ASSERT_NO_FATAL_FAILURE(table.start({"--seed", "31", "--camera-size", "1600x1280"}));
+    ASSERT_NO_FATAL_FAILURE(table.start({"--seed", "31", "--camera-size", "960x768"}));
     setByHand(0, 0.0); // the show stands still
     window.studio().devices.connectTo(table.ready["servos"].toString());
     ASSERT_TRUE(offersStart()) << story();

@@ -154,9 +154,20 @@ CalibrationService::~CalibrationService() = default;
 
 void CalibrationService::setActive(bool active) {
     active_ = active;
-    if (!active) return liveTimer_->stop();
+    if (!active) return letGo();
     if (!bench_ && isLive(state_.setup.way)) return openBench();
     look();
+}
+
+/// Other measurements look through the same camera, and the projector has its show back.
+void CalibrationService::letGo() {
+    liveTimer_->stop();
+    if (state_.setup.way != CaptureWay::camera || state_.work == CalibrationState::Work::capturing || !bench_) return;
+    looker_->look(
+        [bench = std::exchange(bench_, nullptr)](const Progress&) mutable { bench.reset(); }); // takes a while
+    isLooking_ = false;
+    live_ = {};
+    emit liveChanged();
 }
 
 std::size_t CalibrationService::projector() const {
@@ -467,7 +478,8 @@ void CalibrationService::openBench() {
 
 void CalibrationService::look() {
     isStale_ = isLooking_;
-    if (!active_ || !bench_ || isLooking_ || state_.work == CalibrationState::Work::capturing) return;
+    if (!active_) return letGo();
+    if (!bench_ || isLooking_ || state_.work == CalibrationState::Work::capturing) return;
     isLooking_ = true;
     const int pose = freeNumber(state_);
     looker_->look([this, bench = bench_, board = state_.setup.board, pose, wanted = wanted(),

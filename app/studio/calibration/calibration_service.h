@@ -114,6 +114,7 @@ private:
     void openBench();
     void tellNoProjector();
     void look();
+    void letGo();
     void takeSight(const std::shared_ptr<CaptureBench>& from, LiveSight sight, const std::string& trouble);
     void clearResults();
     void withdrawVerdicts();

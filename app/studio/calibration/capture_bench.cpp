@@ -193,16 +193,16 @@ public:
             };
             capturer_ = std::make_unique<PoseCapture>(*camera_, *display_, std::move(settings));
         }
+        isLit_ = false;
         onShot_ = onShot;
         CapturedPose captured = capturer_->capture(nameOfPose(pose), progress);
         onShot_ = nullptr;
-        isLit_ = false;
+        light(progress);
         return captured;
     }
 
     [[nodiscard]] cv::Mat look(const Progress& progress) override {
-        if (!isLit_) display_->show(whiteOf(display_->size()), progress);
-        isLit_ = true;
+        if (!isLit_) light(progress);
         if (!std::exchange(isExposed_, true)) (void)findExposure(*camera_, progress); // held from now on
         cv::Mat picture = greyOf(camera_->grab(progress)).clone();
         size_ = picture.size();
@@ -222,6 +222,12 @@ public:
     [[nodiscard]] std::vector<std::string> automatics() const override { return camera_->automatics(); }
 
 private:
+    /// The board stays lit between two photographs: the show is not for it, and takes time to draw.
+    void light(const Progress& progress) {
+        display_->show(whiteOf(display_->size()), progress);
+        isLit_ = true;
+    }
+
     CalibrationSetup setup_;
     std::shared_ptr<PatternDisplay> display_;
     std::unique_ptr<CaptureCamera> camera_;

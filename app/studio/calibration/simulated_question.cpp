@@ -13,8 +13,7 @@ SimulatedQuestionWords wordsOfQuestion(const std::vector<std::string>& asked) {
     for (std::size_t i = 0; i < std::min(asked.size(), kNamed); ++i) names << QString::fromStdString(asked[i]);
     if (asked.size() > kNamed) names << QObject::tr("and more");
     return {QObject::tr("This room holds what was measured or entered"),
-            QObject::tr(
-                "Already in it: %1. What the virtual lab made says nothing of this room; it stays marked as simulated.")
+            QObject::tr("Already in it: %1. What is simulated says nothing of this room; it stays marked as simulated.")
                 .arg(names.join(", ")),
             QObject::tr("Use it as simulated")};
 }

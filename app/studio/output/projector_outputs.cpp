@@ -152,6 +152,9 @@ void ProjectorOutputs::useScreen(std::size_t projector, const QString& screen) {
     if (known.lens.way != Origin::Way::measured && sizeOf(known) != pixels)
         editInstallation(document_, tr("%1 has the pixels of its screen").arg(titleOf(projector)),
                          [&](Installation& room) {
+                             Origin& lens = room.projectors[projector].lens;
+                             if (lens.way != Origin::Way::entered) // nobody entered it
+                                 lens = {Origin::Way::assumed, "with the pixels of its screen", utcDate()};
                              CalibratedCamera& camera = room.projectors[projector].camera;
                              const glm::dvec2 focal = camera.focal * static_cast<double>(pixels.width()) /
                                                       static_cast<double>(camera.size.x);
