@@ -14,6 +14,8 @@ namespace lumorph {
 
 namespace {
 
+constexpr double kWhitest = 255.0;      // byte
+constexpr double kFewCut = 0.02;        // of a patch's pixels
 constexpr double kSheetSide = 0.12;     // metres
 constexpr double kSheetMargin = 0.02;   // metres around it that are free of the device
 constexpr double kSheetHeight = 0.0005; // metres above the table
@@ -167,7 +169,12 @@ std::vector<glm::dvec3> patchBytes(std::span<const LightPatch> patches, const cv
     for (const LightPatch& patch : patches) {
         if ((patch.pixels & cv::Rect({}, picture.size())) != patch.pixels)
             throw InvalidInput("picture of the camera", "it is smaller than the camera's", "take all of the same size");
-        const cv::Scalar mean = cv::mean(picture(patch.pixels));
+        const cv::Mat seen = picture(patch.pixels);
+        cv::Scalar mean = cv::mean(seen);
+        // The device need not lie where it is believed to: across its edge one part is cut off, and the mean is not.
+        const cv::Scalar cut = cv::mean(seen >= kWhitest);
+        for (int channel = 0; channel < seen.channels(); ++channel)
+            if (cut[channel] > kFewCut * 255.0) mean[channel] = kWhitest;
         means.push_back(picture.channels() == 1 ? glm::dvec3(mean[0]) : glm::dvec3(mean[0], mean[1], mean[2]));
     }
     return means;

@@ -50,7 +50,8 @@ struct LightPatch {
                                                    const CalibratedCamera& camera,
                                                    const std::optional<WhiteSheet>& sheet);
 
-/// Mean bytes of each patch of an 8-bit picture: red, green and blue, or of a grey one three times the same.
+/// Mean bytes of each patch of an 8-bit picture: red, green and blue, or of a grey one three times the same; 255 where
+/// one pixel in fifty is cut off.
 [[nodiscard]] std::vector<glm::dvec3> patchBytes(std::span<const LightPatch> patches, const cv::Mat& picture);
 
 } // namespace lumorph

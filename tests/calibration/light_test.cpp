@@ -11,6 +11,7 @@
 
 #include "calibration/lab/true_room.h"
 #include "calibration/light/camera_response.h"
+#include "calibration/light/light_patches.h"
 #include "core/render/gl/headless_context.h"
 #include "core/scene/projector_response.h"
 #include "tests/calibration/measured_stage.h"
@@ -127,6 +128,21 @@ void printErrors(const char* what, const LightCalibration& found, const LightErr
                 100.0 * found.before.median, 100.0 * found.before.most);
     for (const Finding& warning : found.warnings) std::printf("  %s\n", sentenceOf(warning).c_str());
     if (found.refusal) std::printf("  refused: %s\n", sentenceOf(*found.refusal).c_str());
+}
+
+// Half of a patch on the white device, half beside it, where the device was not believed to be.
+TEST(PatchBytes, AreCutOffWhereAPartOfThePatchIs) {
+    cv::Mat picture(8, 24, CV_8UC3, cv::Scalar(100, 120, 140));
+    picture(cv::Rect(0, 0, 4, 8)).setTo(cv::Scalar(255, 200, 160));
+    picture(cv::Rect(16, 0, 8, 8)).setTo(cv::Scalar(254, 254, 254));
+    LightPatch mixed, even, bright;
+    mixed.pixels = {0, 0, 8, 8};
+    even.pixels = {8, 0, 8, 8};
+    bright.pixels = {16, 0, 8, 8};
+    const auto bytes = patchBytes(std::vector{mixed, even, bright}, picture);
+    EXPECT_EQ(bytes[0], glm::dvec3(255.0, 160.0, 150.0));
+    EXPECT_EQ(bytes[1], glm::dvec3(100.0, 120.0, 140.0));
+    EXPECT_EQ(bytes[2], glm::dvec3(254.0));
 }
 
 TEST(LightTest, OfAProjectorIsMeasuredWithTheColoursOfDeviceAndTable) {
