@@ -248,6 +248,8 @@ QString lineFor(const char* link, const studio::LiveStep& step, std::size_t numb
 
 void WholeChainAtTheTable::touch(const char* link, const std::vector<studio::LiveStep>& steps) {
     window.click(QString("chain.link.") + link);
+    table.does("touch dimple 1"); // the pointer is in sight
+    pass(1s);
     ASSERT_TRUE(chain.offers("Begin, with the tracker")) << chain.story();
     chain.next();
     ASSERT_TRUE(chain.offers("Cancel")) << chain.story();
