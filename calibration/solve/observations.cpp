@@ -10,6 +10,7 @@ namespace lumorph {
 namespace {
 
 constexpr double kDecodedShare = 0.6; // of a square
+constexpr double kFewWhole = 0.1;     // of all squares, without an unknown pixel
 constexpr double kFlat = 0.35;        // projector pixels
 constexpr int kSmallestSquare = 4;    // camera pixels
 
@@ -91,23 +92,35 @@ std::vector<ProjectorPoint> projectorPointsOn(const DecodedView& view, const std
     const int side =
         std::max(kSmallestSquare, static_cast<int>(std::lround(std::sqrt(cv::contourArea(outline) / most))));
     const double reach = reachOf(view, inside, side);
-    std::vector<ProjectorPoint> points;
-    std::vector<SquarePixel> pixels;
-    for (int top = 0; top + side <= inside.rows; top += side)
-        for (int left = 0; left + side <= inside.cols; left += side) {
-            const cv::Point2d middle(left + 0.5 * (side - 1), top + 0.5 * (side - 1));
-            pixels.clear();
-            for (int y = top; y < top + side; ++y)
-                for (int x = left; x < left + side; ++x)
-                    if (inside(y, x) != 0 && view.confidence(y, x) > 0.0F)
-                        pixels.push_back({x - middle.x, y - middle.y, view.column(y, x), view.row(y, x)});
-            const double least = kDecodedShare * side * side;
-            if (static_cast<double>(pixels.size()) < least) continue;
-            dropStrays(pixels, reach);
-            if (static_cast<double>(pixels.size()) < least) continue;
-            const SquareFit fit = fitOf(pixels);
-            if (fit.residual < kFlat) points.push_back({middle, {fit.column[0], fit.row[0]}});
-        }
+    const auto pointsOf = [&](double share) {
+        std::vector<ProjectorPoint> points;
+        std::vector<SquarePixel> pixels;
+        for (int top = 0; top + side <= inside.rows; top += side)
+            for (int left = 0; left + side <= inside.cols; left += side) {
+                const cv::Point2d middle(left + 0.5 * (side - 1), top + 0.5 * (side - 1));
+                pixels.clear();
+                int within = 0;
+                for (int y = top; y < top + side; ++y)
+                    for (int x = left; x < left + side; ++x) {
+                        if (inside(y, x) == 0) continue;
+                        ++within;
+                        if (view.confidence(y, x) > 0.0F)
+                            pixels.push_back({x - middle.x, y - middle.y, view.column(y, x), view.row(y, x)});
+                    }
+                const double least = kDecodedShare * side * side;
+                if (static_cast<double>(pixels.size()) < std::max(least, share * within)) continue;
+                dropStrays(pixels, reach);
+                if (static_cast<double>(pixels.size()) < least) continue;
+                const SquareFit fit = fitOf(pixels);
+                if (fit.residual < kFlat) points.push_back({middle, {fit.column[0], fit.row[0]}});
+            }
+        return points;
+    };
+    // A square of which a pixel is unknown lies at an edge, where the others are worth less; a board that is tilted far
+    // has hardly any other.
+    std::vector<ProjectorPoint> points = pointsOf(1.0);
+    const double squares = cv::contourArea(outline) / (side * side);
+    if (static_cast<double>(points.size()) < kFewWhole * squares) points = pointsOf(0.0);
     return points;
 }
 

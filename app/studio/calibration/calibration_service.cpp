@@ -154,9 +154,14 @@ CalibrationService::~CalibrationService() = default;
 
 void CalibrationService::setActive(bool active) {
     active_ = active;
-    if (!active) return letGo();
+    if (!active) return liveTimer_->stop();
     if (!bench_ && isLive(state_.setup.way)) return openBench();
     look();
+}
+
+void CalibrationService::setHolding(bool holds) {
+    isHolding_ = holds;
+    if (!holds) letGo();
 }
 
 /// Other measurements look through the same camera, and the projector has its show back.
@@ -478,8 +483,8 @@ void CalibrationService::openBench() {
 
 void CalibrationService::look() {
     isStale_ = isLooking_;
-    if (!active_) return letGo();
-    if (!bench_ || isLooking_ || state_.work == CalibrationState::Work::capturing) return;
+    if (!isHolding_) return letGo();
+    if (!active_ || !bench_ || isLooking_ || state_.work == CalibrationState::Work::capturing) return;
     isLooking_ = true;
     const int pose = freeNumber(state_);
     looker_->look([this, bench = bench_, board = state_.setup.board, pose, wanted = wanted(),

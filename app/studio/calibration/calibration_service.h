@@ -67,6 +67,8 @@ public:
 
     /// In sight or not: only then the camera is looked through.
     void setActive(bool active);
+    /// Whether it keeps a connected camera, and the projector lit, while nobody looks through it.
+    void setHolding(bool holds);
     /// Another way, board, folder ...: poses that were made with other ones go. Of the board's spacing only what is
     /// said has changed: it is solved again.
     void setSetup(const CalibrationSetup& setup);
@@ -151,6 +153,7 @@ private:
     JobSlots jobs_;
     QTimer* liveTimer_;
     bool active_ = false;
+    bool isHolding_ = true;
     bool isOpening_ = false; ///< the bench
     bool isAsked_ = false;   ///< a photograph, while it was opened
     bool isLooking_ = false;

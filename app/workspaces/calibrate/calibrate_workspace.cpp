@@ -255,6 +255,7 @@ void CalibrateWorkspace::setSeen(bool seen) {
 
 void CalibrateWorkspace::look() {
     const bool looks = seen_ && !selection_.whole(); // nobody sees the camera's picture beside the whole chain
+    service_.setHolding(active_ && !selection_.whole());
     if (looks != looks_) service_.setActive(looks);
     looks_ = looks;
 }
