@@ -372,6 +372,7 @@ std::optional<Phase> beatOf(const std::vector<Phase>& phases) {
 DecodedAxis readPhases(const std::vector<cv::Mat>& images, const std::vector<PhaseSet>& sets, int length,
                        double noise) {
     std::vector<Phase> phases;
+    phases.reserve(sets.size() + 1);
     for (const PhaseSet& set : sets) phases.push_back(phaseOf(images, set));
     if (phases.front().periods != 1) {
         const auto beat = beatOf(phases);
