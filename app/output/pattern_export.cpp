@@ -8,6 +8,7 @@
 #include <system_error>
 
 #include "app/output/video_writer.h"
+#include "calibration/capture/capture_camera.h"
 #include "core/base/atomic_file.h"
 #include "core/base/error.h"
 
@@ -16,14 +17,6 @@ namespace lumorph {
 namespace {
 
 constexpr double kFrames = 10.0; ///< a second, of the film
-
-Image imageOf(const cv::Mat1b& grey) {
-    Image image({grey.cols, grey.rows});
-    auto to = image.pixels().begin();
-    for (int y = 0; y < grey.rows; ++y)
-        for (const std::uint8_t* at = grey[y]; at != grey[y] + grey.cols; ++at) *to++ = {*at, *at, *at, 255};
-    return image;
-}
 
 std::string nameOf(std::size_t index, const std::string& words) {
     char number[16];
@@ -74,7 +67,7 @@ void writePatterns(const CaptureOrder& order, const std::filesystem::path& folde
     for (std::size_t i = 0; i < order.images.size(); ++i) {
         progress.throwIfCancelled();
         const std::string words = wordsOf(order.images[i]);
-        const Image image = imageOf(drawPattern(order.images[i], order.projector));
+        const Image image = imageOfGrey(drawPattern(order.images[i], order.projector));
         writePng(image, folder / nameOf(i, words));
         for (int frame = 0; frame < frames; ++frame) film.add(image);
         lines += words + "\n";

@@ -23,7 +23,8 @@ struct TableCameraOptions {
 
 /// A camera that looks at the table by the lab's rays, while projectors throw what the screens show. Light comes
 /// `predictionSeconds` of the truth after its picture was on the screen. The way from projector to camera pixel is
-/// worked out once while nothing moves.
+/// worked out once while nothing moves; what moves is shown late by the time its rays take, about half a second for
+/// 1280 x 1024 pixels.
 class TableCamera {
 public:
     /// Both outlive it.

@@ -156,4 +156,13 @@ cv::Mat greyOf(const cv::Mat& picture) {
     return grey;
 }
 
+Image imageOfGrey(const cv::Mat& grey) {
+    Image image({grey.cols, grey.rows});
+    auto* to = image.pixels().data();
+    for (int y = 0; y < grey.rows; ++y)
+        for (const uchar* from = grey.ptr(y); from != grey.ptr(y) + grey.cols; ++from, ++to)
+            *to = {*from, *from, *from, 255};
+    return image;
+}
+
 } // namespace lumorph

@@ -8,6 +8,7 @@
 
 #include <opencv2/core.hpp>
 
+#include "core/base/image.h"
 #include "core/base/progress.h"
 
 namespace lumorph {
@@ -41,6 +42,8 @@ public:
 
 /// A picture of a camera as 8-bit grey.
 [[nodiscard]] cv::Mat greyOf(const cv::Mat& picture);
+/// An 8-bit grey picture as an image.
+[[nodiscard]] Image imageOfGrey(const cv::Mat& grey);
 
 /// A camera of this machine, "/dev/video0", in the largest size that is at most `most` (empty: what it gives by
 /// itself), an industrial one, "genicam://Basler-21438501", or one that sends MJPEG, "http://192.168.0.7:8080/video".

@@ -59,7 +59,7 @@ std::optional<double> findExposure(CaptureCamera& camera, const Progress& progre
     if (!can) return std::nullopt;
     const auto brightAt = [&](double seconds) {
         camera.setExposure(seconds);
-        (void)camera.grab(progress); // some heed it a frame later
+        (void)camera.grab(progress); // some cameras apply it one frame later
         return lightOf(greyOf(camera.grab(progress))).bright;
     };
     double seconds = std::clamp(kFirst, can->shortest, can->longest);
@@ -71,10 +71,10 @@ std::optional<double> findExposure(CaptureCamera& camera, const Progress& progre
         if (std::abs(next / seconds - 1.0) < 0.01) break; // as long or as short as it can
         const double then = brightAt(next);
         const bool isTelling = bright < PictureLight::kClipped && std::abs(next / seconds - 1.0) * bright > kTelling;
-        const bool isHeeded = !isTelling || std::abs(then - bright) > 1.0;
+        const bool reacts = !isTelling || std::abs(then - bright) > 1.0;
         seconds = next;
         bright = then;
-        if (!isHeeded) return std::nullopt;
+        if (!reacts) return std::nullopt;
     }
     return seconds;
 }

@@ -25,8 +25,8 @@ struct PictureLight {
 [[nodiscard]] PictureLight lightOf(const cv::Mat& grey);
 
 /// Exposes so that the brightest of what the camera sees now stays a little below white, and leaves it so; from a
-/// sixtieth of a second on in whole sixtieths, as projectors' light goes. Returns the seconds; empty where the camera
-/// cannot be told, or does not heed it. Throws what grab and setExposure throw.
+/// sixtieth of a second on in whole sixtieths, as projectors' light goes. Returns the seconds; empty for a camera
+/// without exposure control, or one that does not react to it. Throws what grab and setExposure throw.
 std::optional<double> findExposure(CaptureCamera& camera, const Progress& progress = {});
 
 } // namespace lumorph

@@ -73,15 +73,6 @@ private:
     double dark_ = 0.0, contrast_ = 0.0;
 };
 
-void writeGrey(const cv::Mat& grey, const std::filesystem::path& file) {
-    Image image({grey.cols, grey.rows});
-    auto* to = image.pixels().data();
-    for (int y = 0; y < grey.rows; ++y)
-        for (const uchar* from = grey.ptr(y); from != grey.ptr(y) + grey.cols; ++from, ++to)
-            *to = {*from, *from, *from, 255};
-    writePng(image, file);
-}
-
 std::string fileNameOf(int index, const PatternImage& pattern) {
     char number[32];
     std::snprintf(number, sizeof number, "shot_%03d_", index);
@@ -262,7 +253,7 @@ void savePose(const std::filesystem::path& folder, const CapturedPose& pose, con
         if (!fs::create_directory(partial, failed)) throwWriteError(partial, failed.value());
         for (std::size_t i = 0; i < pose.images.size(); ++i) {
             progress.throwIfCancelled();
-            writeGrey(pose.images[i], partial / pose.files[i]);
+            writePng(imageOfGrey(pose.images[i]), partial / pose.files[i]);
             progress.report(static_cast<double>(i + 1) / static_cast<double>(pose.images.size()), "saving the pose");
         }
         fs::remove_all(before, failed);

@@ -167,6 +167,42 @@ TEST_F(TableProgramTest, TrackerTellsWhereThingsTrulyAre) {
     EXPECT_FALSE(tell("carry 1 2")["ok"].toBool());
 }
 
+// Light, servos and check look through the same camera.
+TEST_F(TableProgramTest, CameraAndProjectorAreFreeOnceTheWholeChainIsShown) {
+    ASSERT_NO_FATAL_FAILURE(start());
+    TemporaryFolder session;
+    {
+        studio::Settings settings; // as a new user has it
+        settings.remove("calibrate");
+    }
+    StudioWindow window(session / "session", "scene");
+    ASSERT_TRUE(eventually([&] { return window.studio().jobs.running().empty(); }, 60s));
+    window.window().showWorkspace("calibrate");
+    ASSERT_NO_FATAL_FAILURE(chooseScreenAndCamera(window));
+    EXPECT_EQ(window.state().installation->projectors.front().lens.way, Origin::Way::assumed)
+        << "nobody has entered the pixels of the screen";
+    const auto isWhite = [&] {
+        const QImage shown = window.studio().outputs.window(0)->grab().toImage();
+        return shown.pixelColor(shown.width() / 2, shown.height() / 2) == QColor(Qt::white);
+    };
+    const auto offers = [&](const QString& words) {
+        return eventually([&] {
+            const auto* next = window.findNow<QAbstractButton>("calibrate.card.next");
+            return next && next->text().startsWith(words);
+        });
+    };
+    ASSERT_TRUE(offers("Photograph pose 1"));
+    window.click("calibrate.card.next");
+    ASSERT_TRUE(offers("Photograph this pose again"))
+        << "no board lies there: " << window.text("calibrate.card.title").toStdString() << ": "
+        << window.text("calibrate.card.text").toStdString();
+    EXPECT_TRUE(eventually(isWhite, 20s)) << "a board that is laid there now is lit";
+    window.click("calibrate.whole");
+    EXPECT_TRUE(eventually([&] { return !isWhite(); }, 20s)) << "the show is back";
+    const auto camera = openCaptureCamera(address("uri"));
+    EXPECT_FALSE(camera->grab({}).empty());
+}
+
 /// A body's pose from another one's, by OpenCV's conventions.
 glm::dmat4 fromOther(const CalibratedCamera& of, const CalibratedCamera& other) {
     return of.cameraFromWorld * glm::inverse(other.cameraFromWorld);

@@ -67,7 +67,7 @@ public:
 
     /// In sight or not: only then the camera is looked through.
     void setActive(bool active);
-    /// Whether it keeps a connected camera, and the projector lit, while nobody looks through it.
+    /// If false, camera and projector are released as soon as nothing is being photographed.
     void setHolding(bool holds);
     /// Another way, board, folder ...: poses that were made with other ones go. Of the board's spacing only what is
     /// said has changed: it is solved again.

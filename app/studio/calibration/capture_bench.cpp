@@ -193,17 +193,20 @@ public:
             };
             capturer_ = std::make_unique<PoseCapture>(*camera_, *display_, std::move(settings));
         }
+        if (!isExposed_) light(progress);
         isLit_ = false;
         onShot_ = onShot;
         CapturedPose captured = capturer_->capture(nameOfPose(pose), progress);
         onShot_ = nullptr;
-        light(progress);
+        try {
+            light(progress);
+        } catch (const std::exception&) { // the pose is kept; whoever looks next is told
+        }
         return captured;
     }
 
     [[nodiscard]] cv::Mat look(const Progress& progress) override {
         if (!isLit_) light(progress);
-        if (!std::exchange(isExposed_, true)) (void)findExposure(*camera_, progress); // held from now on
         cv::Mat picture = greyOf(camera_->grab(progress)).clone();
         size_ = picture.size();
         return picture;
@@ -222,10 +225,13 @@ public:
     [[nodiscard]] std::vector<std::string> automatics() const override { return camera_->automatics(); }
 
 private:
-    /// The board stays lit between two photographs: the show is not for it, and takes time to draw.
+    /// White light, also between two photographs: drawing the show would take time from the solver. The first time the
+    /// exposure is set by it, and kept.
     void light(const Progress& progress) {
         display_->show(whiteOf(display_->size()), progress);
         isLit_ = true;
+        if (!isExposed_) (void)findExposure(*camera_, progress);
+        isExposed_ = true;
     }
 
     CalibrationSetup setup_;

@@ -153,7 +153,7 @@ void ProjectorOutputs::useScreen(std::size_t projector, const QString& screen) {
         editInstallation(document_, tr("%1 has the pixels of its screen").arg(titleOf(projector)),
                          [&](Installation& room) {
                              Origin& lens = room.projectors[projector].lens;
-                             if (lens.way != Origin::Way::entered) // nobody entered it
+                             if (lens.way != Origin::Way::entered) // a lens that the user entered stays so
                                  lens = {Origin::Way::assumed, "with the pixels of its screen", utcDate()};
                              CalibratedCamera& camera = room.projectors[projector].camera;
                              const glm::dvec2 focal = camera.focal * static_cast<double>(pixels.width()) /

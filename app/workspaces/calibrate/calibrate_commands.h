@@ -26,7 +26,7 @@ void askForRecording(const CalibrateParts& parts, std::size_t link, std::size_t 
 void askToKeepRecording(const CalibrateParts& parts, std::size_t link);
 /// Asks where poses are saved.
 void askForSaved(const CalibrateParts& parts);
-/// Where to write pictures and a film of the patterns, for whoever photographs them by another program.
+/// Asks for a folder and exports the patterns to it, as pictures and as a film.
 void askToWritePatterns(const CalibrateParts& parts);
 /// Where to write the page of the board that is set up.
 void askToPrintBoard(const CalibrateParts& parts);
