@@ -113,7 +113,9 @@ void print(const LightCalibration& result) {
     std::printf("%s\n", result.assumption.c_str());
 }
 
+/// Null for one that was not recorded.
 nlohmann::json delayJson(const MeasuredDelay& delay) {
+    if (delay.events == 0) return {};
     return {{"ms", 1e3 * delay.seconds},
             {"sigmaMs", 1e3 * delay.sigma},
             {"halvesDifferMs", delay.halvesDiffer ? nlohmann::json(1e3 * *delay.halvesDiffer) : nlohmann::json()},
@@ -153,8 +155,10 @@ void printDelay(const char* name, const MeasuredDelay& delay) {
 void print(const MeasuredDelays& delays) {
     std::printf("%s It takes %.0f s.\n", delays.summary.c_str(), delays.seconds);
     printDelay("frame to light", delays.light);
-    printDelay("age of poses", delays.tracker);
-    printDelay("a moved mark says", delays.mark);
+    if (!delays.isOfLightAlone()) {
+        printDelay("age of poses", delays.tracker);
+        printDelay("a moved mark says", delays.mark);
+    }
     for (const MeasuredDelays::Servo& servo : delays.servos) printDelay(servo.name.c_str(), servo.step.lag);
     printFindings(delays.warnings);
     if (delays.gain)

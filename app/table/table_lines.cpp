@@ -2,11 +2,13 @@
 
 #include <algorithm>
 #include <charconv>
+#include <chrono>
 #include <cmath>
 #include <memory>
 #include <optional>
 #include <sstream>
 #include <system_error>
+#include <thread>
 
 #include <nlohmann/json.hpp>
 #include <opencv2/imgproc.hpp>
@@ -23,7 +25,10 @@ constexpr double kDegree = 0.017453292519943295;
 constexpr std::size_t kCorners = 20; // that are asked for: those of the fit and the check points
 constexpr int kBoardPoses = 24;
 constexpr double kLargestDot = 0.01; // of a projector's picture
-constexpr double kAim = 0.35;        // of the way from a dot to the eye
+constexpr double kJump = 0.02;       // metres
+constexpr Microseconds kRests{400'000}, kMostRestless{8'000'000}, kMostLate{2'000'000};
+constexpr std::chrono::milliseconds kLook{2};
+constexpr double kAim = 0.35; // of the way from a dot to the eye
 
 /// Holes that are drilled in a corner of the table.
 glm::dvec3 dimple(int number) { return {-0.3 + 0.06 * number, 0.0, 0.3}; }
@@ -55,7 +60,8 @@ TableLines::TableLines(TableParts parts) : parts_(parts) {}
 
 std::string_view TableLines::help() {
     return "board N|off | touch dot|corner N|dimple N|X Y Z | swing dimple N | look X Y Z | aim | "
-           "carry X Y Z [DEGREES [SECONDS]] | hand X Y Z|off | cover on|off | fault KEY on|off | quit; places are "
+           "carry X Y Z [DEGREES [SECONDS]] | latency [TIMES] | hand X Y Z|off | cover on|off | fault KEY on|off | "
+           "quit; places are "
            "metres, faults: tracker_dropout, tracker_swap, servo_jammed, servo_reversed, board_reset, "
            "camera_unplugged";
 }
@@ -136,6 +142,46 @@ void TableLines::fault(const Words& words) {
     for (const auto& camera : parts_.cameras) camera->setPlugged(!on);
 }
 
+std::string TableLines::latency(const Words& words) {
+    const SteadyClock clock;
+    const auto times = static_cast<std::size_t>(std::clamp(words.all.size() > 1 ? words.count(1) : 12, 3, 100));
+    const auto waitFor = [&clock](Microseconds most, const auto& holds) {
+        for (const Microseconds begun = clock.now(); !holds(); std::this_thread::sleep_for(kLook))
+            if (clock.now() - begun > most) return false;
+        return true;
+    };
+    const auto changed = [&] { return parts_.eye.at(0, clock.now()).since; };
+    parts_.tracker.setTrembles(false); // its noise would move the picture all the time
+    const std::shared_ptr<void> trembles(nullptr, [this](void*) { parts_.tracker.setTrembles(true); });
+    const Pose lies = parts_.table.at(clock.now()).device;
+    const double turn = 2.0 * std::atan2(lies.rotation.y, lies.rotation.w);
+    const std::shared_ptr<void> back(nullptr, [&](void*) { parts_.table.carry(lies.position, turn, 0.5); });
+    std::vector<double> late;
+    while (late.size() < times) {
+        if (!waitFor(kMostRestless, [&] { return clock.now() - changed() > kRests; }))
+            throw InvalidInput("latency", "the picture on the screen does not come to rest",
+                               "pause what moves in the show");
+        const Microseconds moved = clock.now();
+        const double aside = late.size() % 2 == 0 ? kJump : 0.0;
+        parts_.table.carry(lies.position + glm::dvec3(aside, 0.0, 0.0), turn, 0.0);
+        std::optional<Microseconds> sent;
+        const auto follows = [&] {
+            if (!sent) sent = parts_.tracker.sentAfter(moved);
+            return sent && changed() > *sent;
+        };
+        if (!waitFor(kMostLate, follows))
+            throw InvalidInput("latency", "the picture on the screen does not follow the device",
+                               "track it, and show something on it");
+        late.push_back(1e-3 * static_cast<double>((changed() - *sent).count()));
+    }
+    std::ranges::sort(late);
+    nlohmann::ordered_json said{{"ok", true}};
+    said["sent_to_pixels_ms"] = {
+        {"median", late[late.size() / 2]}, {"least", late.front()}, {"most", late.back()}, {"jumps", late.size()}};
+    said["light_ms"] = 1e3 * parts_.table.truth().room.predictionSeconds;
+    return said.dump();
+}
+
 std::string TableLines::answer(std::string_view line) {
     nlohmann::ordered_json said;
     try {
@@ -159,6 +205,8 @@ std::string TableLines::answer(std::string_view line) {
             parts_.table.cover(words.isOn(1));
         else if (order == "fault")
             fault(words);
+        else if (order == "latency")
+            return latency(words);
         else if (order == "quit")
             ended_ = true;
         else

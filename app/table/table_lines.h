@@ -41,6 +41,10 @@ private:
     void touch(const Words& words);
     void look(const Words& words);
     void fault(const Words& words);
+    /// How late pixels follow poses, milliseconds: of jumps of the device, from the tracker's packet to another picture
+    /// on the first projector's screen. Light comes `light_ms` after that. Throws InvalidInput where the screen does
+    /// not come to rest, or does not follow.
+    [[nodiscard]] std::string latency(const Words& words);
     /// Where the middle of a projector's small spot of light falls on the table: a dot, with or without a ring. Throws
     /// InvalidInput where none shows one.
     [[nodiscard]] glm::dvec3 dot() const;

@@ -1,5 +1,6 @@
 #include "app/table/tracker_server.h"
 
+#include <algorithm>
 #include <array>
 #include <chrono>
 #include <cmath>
@@ -24,6 +25,7 @@ namespace {
 
 constexpr natnet::Version kVersion{2, 10};
 constexpr std::chrono::microseconds kPeriod{1'000'000 / 120};
+constexpr std::size_t kRemembered = 120; // packets: a second
 constexpr double kDegree = 0.017453292519943295;
 
 /// What a camera system that was set up well still trembles by.
@@ -92,6 +94,12 @@ std::string TrackerServer::address() const {
     return "natnet://127.0.0.1?mode=unicast&command=" + std::to_string(port_);
 }
 
+std::optional<Microseconds> TrackerServer::sentAfter(Microseconds time) const {
+    const std::scoped_lock lock(mutex_);
+    const auto first = std::ranges::find_if(sent_, [time](const auto& one) { return one.first >= time; });
+    return first == sent_.end() ? std::nullopt : std::optional(first->second);
+}
+
 void TrackerServer::serve(const std::stop_token& stop) {
     NatNetWriter writer(kVersion);
     Client client;
@@ -141,11 +149,15 @@ void TrackerServer::serve(const std::stop_token& stop) {
             for (std::size_t k = 0; k < kTableBodies.size(); ++k) {
                 std::optional<Pose> pose = table_.body(static_cast<TableBody>(k), now - late);
                 if (dropsOut_) pose.reset();
-                if (pose) pose = tremble(trackerFromWorld * *pose);
+                if (pose) pose = trackerFromWorld * *pose;
+                if (pose && trembles_) pose = tremble(*pose);
                 const std::size_t called = swapsBodies_ && k < 2 ? 1 - k : k;
                 frame.bodies.push_back(rigidBody(called, pose));
             }
             send(writer.frame(frame));
+            const std::scoped_lock lock(mutex_);
+            sent_.emplace_back(now - late, clock.now());
+            if (sent_.size() > kRemembered) sent_.pop_front();
         }
         next += kPeriod;
         std::this_thread::sleep_until(next);

@@ -1,8 +1,12 @@
 #pragma once
 
 #include <atomic>
+#include <deque>
+#include <mutex>
+#include <optional>
 #include <string>
 #include <thread>
+#include <utility>
 
 #include "app/table/table.h"
 
@@ -20,6 +24,9 @@ public:
 
     [[nodiscard]] std::string address() const;
     void setDropsOut(bool dropsOut) { dropsOut_ = dropsOut; } ///< it sees no body
+    void setTrembles(bool trembles) { trembles_ = trembles; } ///< its poses are noisy; at first they are
+    /// When the first packet with poses of `time` or later was sent; empty: not yet, or more than a second ago.
+    [[nodiscard]] std::optional<Microseconds> sentAfter(Microseconds time) const;
     void setSwapsBodies(bool swaps) { swapsBodies_ = swaps; } ///< device and pointer are taken for each other
 
 private:
@@ -28,7 +35,9 @@ private:
     const Table& table_;
     int socket_ = -1;
     int port_ = 0;
-    std::atomic<bool> dropsOut_{false}, swapsBodies_{false};
+    std::atomic<bool> dropsOut_{false}, swapsBodies_{false}, trembles_{true};
+    mutable std::mutex mutex_;
+    std::deque<std::pair<Microseconds, Microseconds>> sent_; ///< of the last second: of when the poses were, and when
     std::jthread thread_;
 };
 

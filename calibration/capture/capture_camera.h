@@ -8,6 +8,7 @@
 
 #include <opencv2/core.hpp>
 
+#include "core/base/clock.h"
 #include "core/base/image.h"
 #include "core/base/progress.h"
 
@@ -24,6 +25,9 @@ public:
     /// its order. Throws DeviceError for a camera that gives none, DataError for a recording that is broken or has come
     /// to its end, Cancelled.
     [[nodiscard]] virtual cv::Mat grab(const Progress& progress) = 0;
+    /// When the exposure of the picture that `grab` gave last began, by the steady clock; empty for a camera that does
+    /// not say: then it came to be some time before `grab` gave it.
+    [[nodiscard]] virtual std::optional<Microseconds> takenAt() const { return std::nullopt; }
     [[nodiscard]] virtual std::string name() const = 0;
     /// Pixels; empty before the first frame of a camera that does not say.
     [[nodiscard]] virtual cv::Size size() const = 0;

@@ -161,15 +161,22 @@ public:
             if (!buffer) continue;
             const bool isWhole = arv_buffer_get_status(buffer) == ARV_BUFFER_STATUS_SUCCESS;
             cv::Mat picture;
-            if (isWhole && takenAt(buffer) - exposure_ >= called && ++frames_ > kFirstFrames)
-                picture = pictureOf(buffer, *format_);
+            const gint64 began = isWhole ? exposureEnd(buffer) - exposure_ : 0;
+            if (isWhole && began >= called && ++frames_ > kFirstFrames) picture = pictureOf(buffer, *format_);
             arv_stream_push_buffer(stream_.get(), buffer);
-            if (!picture.empty()) return picture;
+            if (!picture.empty()) {
+                began_ = began;
+                return picture;
+            }
             if (!isWhole && ++incomplete >= kMostIncomplete)
                 throw error("its pictures arrive incomplete",
                             "use a network of its own for it, or raise the MTU of the network card to 9000");
         }
         throw error("gives no picture within 10 seconds", "look at its cable and power, and at its trigger settings");
+    }
+    [[nodiscard]] std::optional<Microseconds> takenAt() const override {
+        if (began_ == 0) return std::nullopt;
+        return SteadyClock().now() - Microseconds(g_get_real_time() - began_); // that clock may be set
     }
     [[nodiscard]] std::string name() const override { return address_; }
     [[nodiscard]] cv::Size size() const override { return size_; }
@@ -191,7 +198,7 @@ private:
 
     /// Microseconds of this machine's clock, the end of its exposure at the latest: the camera's own time, by the frame
     /// that came soonest after it. The machine may have been busy when this one came.
-    gint64 takenAt(ArvBuffer* buffer) {
+    gint64 exposureEnd(ArvBuffer* buffer) {
         const auto arrived = static_cast<gint64>(arv_buffer_get_system_timestamp(buffer) / 1000);
         const auto told = static_cast<gint64>(arv_buffer_get_timestamp(buffer) / 1000);
         if (told == 0 || told == std::exchange(toldBefore_, told)) return arrived; // it has no clock
@@ -330,6 +337,7 @@ private:
     std::optional<Format> format_;
     cv::Size size_;
     gint64 exposure_ = 0; ///< microseconds
+    gint64 began_ = 0;    ///< of the last picture, microseconds of the machine's clock; 0: there was none
     gint64 toldBefore_ = 0;
     int frames_ = 0;              ///< since it was started
     std::optional<gint64> ahead_; ///< of this machine's clock before the camera's, microseconds

@@ -32,6 +32,7 @@ void checkAgainstMark(MeasuredDelays& delays) {
 }
 
 std::string summaryOf(const MeasuredDelays& delays) {
+    if (delays.isOfLightAlone()) return "Light comes " + milliseconds(delays.light.seconds) + " after its frame.";
     std::string text = "Light comes " + milliseconds(delays.light.seconds) + " after its frame, poses are " +
                        milliseconds(delays.tracker.seconds) + " old when they arrive";
     if (delays.servos.empty()) return text + ".";
@@ -46,7 +47,7 @@ std::string summaryOf(const MeasuredDelays& delays) {
 Installation withDelays(const Installation& believed, const MeasuredDelays& delays) {
     Installation room = believed;
     room.predictionSeconds = std::max(0.001, delays.light.seconds); // 0 would switch prediction off
-    room.trackerSeconds = std::max(0.0, delays.tracker.seconds);
+    if (!delays.isOfLightAlone()) room.trackerSeconds = std::max(0.0, delays.tracker.seconds);
     for (const MeasuredDelays::Servo& measured : delays.servos) {
         const auto known = std::ranges::find(room.servos, measured.name, &MeasuredServo::actuator);
         if (known != room.servos.end())
@@ -55,11 +56,13 @@ Installation withDelays(const Installation& believed, const MeasuredDelays& dela
             room.servos.push_back({measured.name, {}, measured.step.lag.seconds});
     }
     const MeasuredSigma sigma{0.0, 0.0, std::hypot(delays.light.sigma, delays.tracker.sigma)};
-    room.origins.delays = {Origin::Way::measured,
-                           withSigma(std::to_string(delays.light.events) + " flashes, " +
-                                         std::to_string(delays.tracker.events) + " poses of a board",
-                                     sigma),
-                           utcDate()};
+    room.origins.delays = {
+        Origin::Way::measured,
+        withSigma(std::to_string(delays.light.events) + " flashes, " +
+                      (delays.isOfLightAlone() ? "of light alone"
+                                               : std::to_string(delays.tracker.events) + " poses of a board"),
+                  sigma),
+        utcDate()};
     return room;
 }
 
@@ -74,6 +77,19 @@ void solveAll(const Rig& rig, const DelaysCapture& capture, const Progress& prog
         delays::refuse(Cause::flashNotSeen, "flashes",
                        "light seems to come " + milliseconds(delays.light.seconds) + " after its frame",
                        "look whether the camera's times are those of this machine");
+    if (capture.flashes.arrivalSigma > 0.0)
+        delays.warnings.push_back({Cause::undetermined, "camera", "",
+                                   "it does not say when it takes a picture, so what a picture needs to come counts as "
+                                   "delay of the light",
+                                   "time light with a camera that has a clock, such as a GenICam one, or take off in "
+                                   "Scene what is known of it"});
+    if (capture.mark.pictures.empty() && capture.tracked.poses.empty() && capture.steps.empty()) {
+        delays.warnings.push_back({Cause::undetermined, "tracker and servos", "",
+                                   "flashes alone were recorded, which tell of the projector's light",
+                                   "how late poses and servos are stays as it was; enter it in Scene where it is "
+                                   "known"});
+        return;
+    }
     begin(0.2, "working out how late a mark follows");
     delays.mark = solveMarkDelay(capture.mark, progress.part(0.2, 0.4));
     begin(0.4, "working out how old poses are");

@@ -18,7 +18,8 @@ namespace lumorph {
 /// Servos whose steps are recorded, at most: a device with more keeps the lags that it has.
 inline constexpr std::size_t kMostSteppedServos = 64;
 
-/// What is recorded of delays, all by the clock of the loop.
+/// What is recorded of delays, all by the clock of the loop. Flashes alone, without mark, poses and steps, tell of the
+/// light alone.
 struct DelaysCapture {
     FlashRecording flashes;
     MarkRecording mark;
@@ -48,6 +49,8 @@ struct MeasuredDelays {
     /// knows that room.
     std::optional<PredictionGain> gain;
     [[nodiscard]] bool good() const { return !refusal; }
+    /// Only light was timed: all else stays as it was believed.
+    [[nodiscard]] bool isOfLightAlone() const { return mark.events == 0 && tracker.events == 0; }
 };
 
 /// A capture that cannot be trusted becomes a `refusal`. Throws Cancelled.

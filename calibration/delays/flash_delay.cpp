@@ -100,7 +100,7 @@ void check(const FlashRecording& recording) {
             delays::refuse(Cause::notANumber, what, "the brightness of a picture is no number", "record it again");
         times.push_back(picture.seconds);
     }
-    delays::checkPictures(times, what);
+    delays::checkPictures(times, what, kSlowestForFlashes);
     double before = -std::numeric_limits<double>::infinity();
     for (const FlashRecording::Flash& flash : recording.flashes) {
         if (!std::isfinite(flash.on) || !std::isfinite(flash.off))
@@ -182,7 +182,7 @@ MeasuredDelay solveFlashDelay(const FlashRecording& recording, const Progress& p
         progress.throwIfCancelled();
         without.push_back(solved([left](std::size_t owner) { return owner != left; }));
     }
-    delay.sigma = delays::jackknife(without);
+    delay.sigma = std::hypot(delays::jackknife(without), recording.arrivalSigma);
     const std::size_t middle = fit.flashes()[fit.flashes().size() / 2];
     delay.halvesDiffer = std::abs(solved([middle](std::size_t owner) { return owner < middle; }) -
                                   solved([middle](std::size_t owner) { return owner >= middle; }));

@@ -22,6 +22,9 @@ struct FlashRecording {
     /// Seconds by which the first and last row of the region are exposed after the first of the picture: 0 for a camera
     /// with a global shutter.
     double firstRow = 0.0, lastRow = 0.0;
+    /// Seconds (sigma) by which nobody knows how late all times of pictures are: of a camera that does not say when it
+    /// took them, so that what they needed to come counts as delay.
+    double arrivalSigma = 0.0;
 };
 
 /// When flashes were asked for, so that a camera of whatever rate sees their edges at all phases: `count` of them from

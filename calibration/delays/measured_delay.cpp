@@ -4,7 +4,7 @@
 
 namespace lumorph::delays {
 
-void checkPictures(const std::vector<double>& seconds, const std::string& what) {
+void checkPictures(const std::vector<double>& seconds, const std::string& what, double slowest) {
     std::vector<double> steps;
     for (std::size_t i = 0; i < seconds.size(); ++i) {
         if (!std::isfinite(seconds[i]))
@@ -16,11 +16,12 @@ void checkPictures(const std::vector<double>& seconds, const std::string& what) 
         steps.push_back(seconds[i] - seconds[i - 1]);
     }
     const double step = median(steps);
-    if (steps.size() < 30 || step > kSlowestCamera)
+    if (steps.size() < 30 || step > slowest)
         refuse(Cause::cameraSlow, what,
                steps.size() < 30 ? "there are " + std::to_string(seconds.size()) + " pictures of the camera"
                                  : "the camera gives " + std::to_string(std::lround(1.0 / step)) + " pictures a second",
-               "use one that gives 15 or more for the whole time: more light or a smaller picture often helps");
+               "use one that gives " + std::to_string(std::lround(std::ceil(1.0 / slowest))) +
+                   " or more for the whole time: more light or a smaller picture often helps");
 }
 
 double smallestBetween(double low, double high, double exact, const std::function<double(double)>& cost) {

@@ -22,7 +22,9 @@ struct MeasuredDelay {
 };
 
 inline constexpr double kLongestDelay = 0.5;   ///< seconds that any of them is looked for
-inline constexpr double kSlowestCamera = 0.07; ///< seconds between two pictures of a camera that times anything
+inline constexpr double kSlowestCamera = 0.07; ///< seconds between two pictures of a camera that times motion
+/// Of one that times flashes, each of which it sees in a picture at least.
+inline constexpr double kSlowestForFlashes = 0.11;
 
 /// Private to calibration/delays.
 namespace delays {
@@ -32,7 +34,7 @@ namespace delays {
 }
 
 /// Refuses `camera_slow`, `clock_jumps` and `not_a_number` for the times at which a camera's pictures were exposed.
-void checkPictures(const std::vector<double>& seconds, const std::string& what);
+void checkPictures(const std::vector<double>& seconds, const std::string& what, double slowest = kSlowestCamera);
 
 /// The value at which a function is smallest between two others, to `exact`: golden section.
 [[nodiscard]] double smallestBetween(double low, double high, double exact, const std::function<double(double)>& cost);

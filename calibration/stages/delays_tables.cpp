@@ -13,6 +13,7 @@ namespace lumorph {
 namespace {
 
 const std::vector<std::string> kTimingColumns{"exposure", "first_row", "last_row", "shown_seconds", "seconds"};
+const std::vector<std::string> kArrivalColumns{"sigma"}; // of a camera that does not say when it took pictures
 const std::vector<std::string> kFlashColumns{"on", "off"};
 const std::vector<std::string> kBrightnessColumns{"seconds", "brightness"};
 const std::vector<std::string> kFollowedColumns{"seconds", "body_x", "body_y", "body_z", "mark_x", "mark_y", "mark_z"};
@@ -66,6 +67,7 @@ StageRecording recordingOf(const DelaysCapture& capture, StageRecording recordin
                         {},
                         {capture.flashes.exposure, capture.flashes.firstRow, capture.flashes.lastRow,
                          capture.mark.shownSeconds, capture.seconds}};
+    if (capture.flashes.arrivalSigma > 0.0) tables["arrival"] = {kArrivalColumns, {}, {capture.flashes.arrivalSigma}};
     RecordedTable flashes{kFlashColumns, {}, {}}, brightness{kBrightnessColumns, {}, {}},
         mark{kFollowedColumns, {}, {}};
     for (const auto& [on, off] : capture.flashes.flashes) flashes.add({on, off});
@@ -98,6 +100,12 @@ DelaysCapture delaysOf(const StageRecording& recording) {
     capture.flashes.lastRow = timing.row(0)[2];
     capture.mark.shownSeconds = timing.row(0)[3];
     capture.seconds = timing.row(0)[4];
+    if (recording.tables.contains("arrival")) {
+        const RecordedTable& arrival = tableOf(recording, "arrival", kArrivalColumns);
+        if (arrival.rows() != 1 || !(arrival.row(0)[0] >= 0.0))
+            throw DataError("recording of delays", "arrival.csv has not one row of a sigma", "record it again");
+        capture.flashes.arrivalSigma = arrival.row(0)[0];
+    }
     const RecordedTable& flashes = tableOf(recording, "flashes", kFlashColumns);
     for (std::size_t i = 0; i < flashes.rows(); ++i)
         capture.flashes.flashes.push_back({flashes.row(i)[0], flashes.row(i)[1]});

@@ -13,6 +13,7 @@
 
 #include "calibration/lab/board_lab.h"
 #include "calibration/lab/tracker_lab.h"
+#include "calibration/stages/stage_tables.h"
 #include "core/base/error.h"
 #include "core/loop/viewer_stage.h"
 #include "core/scene/measured_servos.h"
@@ -303,6 +304,28 @@ TEST(DelaysLab, AllDelaysComeOutAsTheLabHasThem) {
         back.servos.clear();
         EXPECT_EQ(back, believed);
     }
+}
+
+// As at a table, where nobody turns a board.
+TEST(DelaysLab, FlashesAloneTimeTheLightAndLeaveAllElse) {
+    Installation believed = withLabCamera(defaultInstallation());
+    believed.trackerSeconds = 0.005;
+    DelaysCapture capture;
+    capture.flashes = recordFlashesInLab(roomWithDelays(0.083, 0.012), 9);
+    const MeasuredDelays clocked = solveDelays(delayTablet(), believed, capture);
+    ASSERT_TRUE(clocked.good()) << clocked.summary;
+    EXPECT_TRUE(clocked.isOfLightAlone());
+    EXPECT_NEAR(clocked.installation.predictionSeconds, 0.083, 0.002);
+    EXPECT_EQ(clocked.installation.trackerSeconds, 0.005);
+    EXPECT_TRUE(clocked.installation.servos.empty());
+    ASSERT_EQ(clocked.warnings.size(), 1U) << "it says what stays";
+    capture.flashes.arrivalSigma = 0.03;
+    const StageSite site{std::make_shared<const Rig>(delayTablet()), believed};
+    const StageRecording kept = stages::recordingOf(capture, {});
+    const auto late = solveDelays(delayTablet(), believed, stages::delaysOf(kept));
+    EXPECT_EQ(late.light.seconds, clocked.light.seconds);
+    EXPECT_GT(late.light.sigma, 0.03) << "the times of a camera without a clock";
+    EXPECT_EQ(late.warnings.size(), 2U);
 }
 
 /// What is wrong shows in short recordings too.

@@ -16,11 +16,12 @@
 #include "core/scene/projector_response.h"
 #include "tests/calibration/measured_stage.h"
 #include "tests/calibration/show_world.h"
+#include "tests/support/light_errors.h"
 
 namespace lumorph {
 namespace {
 
-using test::measuredInLab;
+using test::LightErrors, test::lightErrorsOf, test::measuredInLab;
 
 /// The light that makes a byte, of a camera with a toe, a shoulder and a black of its own.
 double byteOfLight(double light) {
@@ -73,53 +74,6 @@ TEST(CameraResponseTest, RefusesACameraThatEvensExposuresOut) {
     EXPECT_THROW((void)estimateCameraResponse(std::span(seen).first(10)), CaptureRefused);
 }
 
-/// How far measured light is from the true one.
-struct LightErrors {
-    double curve = 0.0;   ///< of white, at any value
-    double gain = 0.0;    ///< share, apart from how bright all is
-    double black = 0.0;   ///< of white
-    double colors = 0.0;  ///< sRGB
-    double product = 0.0; ///< share: gain times device or table, apart from how bright all is
-};
-
-LightErrors errorsOf(const Installation& measured, const Installation& truth) {
-    LightErrors errors;
-    double logs = 0.0, count = 0.0;
-    const auto each = [&](const auto& use) {
-        for (std::size_t p = 0; p < truth.projectors.size(); ++p)
-            for (int channel = 0; channel < 3; ++channel) use(measured.projectors[p], truth.projectors[p], channel);
-    };
-    using Projector = InstalledProjector;
-    each([&](const Projector& found, const Projector& real, int c) {
-        logs += std::log(static_cast<double>(found.gain[c] / real.gain[c]));
-        count += 1.0;
-        errors.black = std::max(errors.black, std::abs(static_cast<double>(found.black[c] - real.black[c])));
-        for (int k = 0; k <= 255; ++k)
-            errors.curve =
-                std::max(errors.curve, std::abs(lightOfValue(found, k / 255.0)[c] - lightOfValue(real, k / 255.0)[c]));
-    });
-    each([&](const Projector& found, const Projector& real, int c) {
-        const double ratio = static_cast<double>(found.gain[c] / real.gain[c]) / std::exp(logs / count);
-        errors.gain = std::max(errors.gain, std::abs(ratio - 1.0));
-    });
-    std::vector<double> products;
-    for (const bool device : {true, false}) {
-        const glm::vec3 found = device ? measured.deviceColor : measured.tableColor;
-        const glm::vec3 real = device ? truth.deviceColor : truth.tableColor;
-        for (int c = 0; c < 3; ++c)
-            errors.colors = std::max(errors.colors, std::abs(static_cast<double>(found[c] - real[c])));
-        const glm::vec3 light = lightOfSrgb(found) / lightOfSrgb(real);
-        each([&](const Projector& one, const Projector& other, int c) {
-            products.push_back(static_cast<double>(light[c] * one.gain[c] / other.gain[c]));
-        });
-    }
-    double mean = 0.0;
-    for (const double product : products) mean += std::log(product) / static_cast<double>(products.size());
-    for (const double product : products)
-        errors.product = std::max(errors.product, std::abs(product / std::exp(mean) - 1.0));
-    return errors;
-}
-
 void printErrors(const char* what, const LightCalibration& found, const LightErrors& errors) {
     std::printf("%-22s %d photographs; curve %.2f %% of white, gains %.2f %%, black %.3f %% of white, colours %.3f, "
                 "gains x colours %.2f %%; fresh greys %.2f %% and %.1f %% (before %.1f %% and %.1f %%)\n",
@@ -150,7 +104,7 @@ TEST(LightTest, OfAProjectorIsMeasuredWithTheColoursOfDeviceAndTable) {
     for (const std::uint32_t seed : {1U, 2U}) {
         const Installation truth = trueRoom(believed, bundledTablet()->actuators(), seed);
         const auto found = measuredInLab<LightCalibration>("light", *bundledTablet(), believed, truth, seed);
-        const LightErrors errors = errorsOf(found.room, truth);
+        const LightErrors errors = lightErrorsOf(found.room, truth);
         printErrors("with a white sheet", found, errors);
         for (const std::string& figure : found.figures) std::printf("  %s\n", figure.c_str());
         ASSERT_TRUE(found.good()) << sentenceOf(*found.refusal);
@@ -181,7 +135,7 @@ TEST(LightTest, WithoutASheetWhatIsProjectedIsRightAllTheSame) {
     LabBenchOptions options;
     options.light.laysSheet = false;
     const auto found = measuredInLab<LightCalibration>("light", *bundledTablet(), believed, truth, 3, options);
-    const LightErrors errors = errorsOf(found.room, truth);
+    const LightErrors errors = lightErrorsOf(found.room, truth);
     printErrors("without a sheet", found, errors);
     ASSERT_TRUE(found.good()) << sentenceOf(*found.refusal);
     EXPECT_FALSE(found.hasWhiteSheet);
@@ -198,7 +152,7 @@ TEST(LightTest, ACameraOfOtherColoursTintsTheGainsAlone) {
     options.light.balance = {0.75, 1.0, 0.85};
     options.light.ambient = 0.0;
     const auto found = measuredInLab<LightCalibration>("light", *bundledTablet(), believed, truth, 4, options);
-    const LightErrors errors = errorsOf(found.room, truth);
+    const LightErrors errors = lightErrorsOf(found.room, truth);
     printErrors("another camera, dark", found, errors);
     ASSERT_TRUE(found.good()) << sentenceOf(*found.refusal);
     EXPECT_LT(errors.curve, 0.006);
@@ -335,7 +289,7 @@ TEST(LightSeamTest, OfTwoProjectorsIsFlatWithinTwoPercentByWhatWasMeasured) {
     errors.gain = 0.2;
     const Installation truth = trueRoom(believed, bundledTablet()->actuators(), 6, errors);
     const auto found = measuredInLab<LightCalibration>("light", *bundledTablet(), believed, truth, 6);
-    printErrors("two projectors", found, errorsOf(found.room, truth));
+    printErrors("two projectors", found, lightErrorsOf(found.room, truth));
     ASSERT_TRUE(found.good()) << sentenceOf(*found.refusal);
     const SeamFigures before = seamOf(believed, truth), after = seamOf(found.room, truth);
     for (const auto& [what, seam] : {std::pair("believed", before), std::pair("measured", after)})

@@ -1,4 +1,6 @@
 #include <cmath>
+#include <cstdio>
+#include <future>
 
 #include <QAbstractButton>
 #include <QGuiApplication>
@@ -11,6 +13,7 @@
 #include <opencv2/core.hpp>
 
 #include "calibration/capture/capture_camera.h"
+#include "calibration/delays/flash_capture.h"
 #include "core/geometry/calibrated_camera.h"
 #include "core/loop/pose_stream.h"
 #include "core/rig/rig_file.h"
@@ -165,6 +168,44 @@ TEST_F(TableProgramTest, TrackerTellsWhereThingsTrulyAre) {
     EXPECT_TRUE(eventually([&] { return bodyOf("pointer").has_value(); }, 5s));
     EXPECT_FALSE(tell("touch nowhere")["ok"].toBool());
     EXPECT_FALSE(tell("carry 1 2")["ok"].toBool());
+}
+
+/// Shows what a measurement asks for, in a thread of its own, in the window of this one.
+class ThrownPatterns final : public PatternDisplay {
+public:
+    explicit ThrownPatterns(Thrown& thrown) : thrown_(thrown) {}
+    [[nodiscard]] cv::Size size() const override { return {thrown_.width(), thrown_.height()}; }
+    void show(const cv::Mat& picture, const Progress& progress) override {
+        progress.throwIfCancelled();
+        const int grey = picture.at<std::uint8_t>(0, 0);
+        QMetaObject::invokeMethod(
+            &thrown_, [this, grey] { thrown_.light(QRect(QPoint(), thrown_.size()), QColor(grey, grey, grey)); },
+            Qt::QueuedConnection);
+    }
+    void clear() override {}
+
+private:
+    Thrown& thrown_;
+};
+
+// Through the screen, the camera's packets and its clock; no frame of a show comes before these pictures.
+TEST_F(TableProgramTest, LightIsTimedByFlashes) {
+    ASSERT_NO_FATAL_FAILURE(start({"--seed", "8", "--camera-size", "480x384"}));
+    Thrown thrown;
+    ASSERT_TRUE(QTest::qWaitForWindowExposed(&thrown));
+    std::future<MeasuredDelay> measured = std::async(std::launch::async, [&] {
+        const auto camera = openCaptureCamera(address("uri"));
+        ThrownPatterns display(thrown);
+        return solveFlashDelay(recordFlashes(*camera, display, 0.0, {}, 16));
+    });
+    ASSERT_TRUE(eventually([&] { return measured.wait_for(0s) == std::future_status::ready; }, 60s));
+    const MeasuredDelay delay = measured.get();
+    std::printf("light: %.1f ms after it was asked for, sigma %.1f, truth %.1f and what the screen takes\n",
+                1e3 * delay.seconds, 1e3 * delay.sigma, 1e3 * truth.predictionSeconds);
+    // To draw and to show it takes this machine some milliseconds, at most a frame of a screen.
+    EXPECT_GT(delay.seconds, truth.predictionSeconds - 0.005);
+    EXPECT_LT(delay.seconds, truth.predictionSeconds + 0.020);
+    EXPECT_LT(delay.sigma, 0.006);
 }
 
 // Light, servos and check look through the same camera.

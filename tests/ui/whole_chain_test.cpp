@@ -1,9 +1,9 @@
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
-#include <mutex>
+#include <fstream>
 
 #include <glm/gtc/matrix_transform.hpp>
-#include <opencv2/imgproc.hpp>
 
 #include "app/studio/calibration/chain_live.h"
 #include "app/studio/document/scene_edit.h"
@@ -13,8 +13,9 @@
 #include "calibration/lab/true_room.h"
 #include "calibration/light/light_lab.h"
 #include "calibration/stages/lab_bench.h"
+#include "devices/controllers/device_profile.h"
 #include "tests/support/chain_judge.h"
-#include "tests/support/cut_tablet.h"
+#include "tests/support/light_errors.h"
 #include "tests/support/long_tests.h"
 #include "tests/support/truth.h"
 #include "tests/ui/chain_hand.h"
@@ -161,11 +162,15 @@ struct Photographed {
 };
 
 /// From nothing to a calibrated show, at a table behind sockets: by the mouse, with hands that do what the cards say.
+/// Each part begins with the room that the one before left on the disk. LUMORPH_TABLE_SEED: which table (31).
 class WholeChainAtTheTable : protected Photographed, public DevicesWindow {
 protected:
+    void SetUp() override;
+    void connectServos(); ///< with the pulses of the device's own wiring
+    void connectTracker();
     void measureProjector();
     void measureLight();
-    void touch(const char* link, const std::vector<studio::LiveStep>& steps);
+    void touch(const char* link, std::vector<studio::LiveStep> (*stepsOf)(const Rig&, const Installation&));
     void measureMoving(const char* link);
     void useAsMeasured(const char* link) {
         ASSERT_TRUE(eventually([&] { return chain.button() == "Use it"; }, 240s)) << link << ": " << chain.story();
@@ -178,10 +183,53 @@ protected:
         };
         ASSERT_TRUE(eventually(ends, 10s)) << link << ": " << chain.story();
     }
+    void keepAs(const char* part) {
+        std::ofstream out(left(part));
+        out << installationText(chain.room());
+        std::fflush(stdout);
+    }
+    /// Opens the chain in the room that a part left.
+    void goOnAfter(const char* part) {
+        ASSERT_TRUE(std::filesystem::exists(left(part))) << "the part before did not end";
+        const Installation room = InstallationStore::read(left(part));
+        studio::editInstallation(window.studio().document, "Before", [&](Installation& into) { into = room; });
+        chain.open();
+        ASSERT_EQ(chain.badge("projector"), "Simulated");
+        window.studio().outputs.useScreen(0, QGuiApplication::primaryScreen()->name());
+        window.studio().notices.at("output").front().actions.front().run(); // the only screen: it asks
+        ASSERT_TRUE(eventually([&] { return window.studio().outputs.window(0) != nullptr; }));
+    }
+    [[nodiscard]] std::filesystem::path left(const char* part) const {
+        return std::filesystem::temp_directory_path() / ("lumorph-table-" + seed_.toStdString() + "-" + part + ".json");
+    }
+    [[nodiscard]] const Rig& rig() { return *window.state().rig.rig; }
 
     TableProgram table;
     ChainHand chain{window};
+
+private:
+    QString seed_ = qEnvironmentVariable("LUMORPH_TABLE_SEED", QString::number(kSeed));
 };
+
+void WholeChainAtTheTable::SetUp() {
+    if (!longTests()) GTEST_SKIP() << "minutes of photographs, hands and servos: LUMORPH_LONG_TESTS=1";
+    ASSERT_NO_FATAL_FAILURE(table.start({"--seed", seed_, "--camera-size", "960x768"}));
+    setByHand(0, 0.0); // the show stands still
+}
+
+void WholeChainAtTheTable::connectServos() {
+    window.window().showWorkspace("devices");
+    window.studio().devices.setProfile(profileFor(rig(), firstChannel(ControllerKind::firmata)), {});
+    window.studio().devices.connectTo(table.ready["servos"].toString());
+    ASSERT_TRUE(offersStart()) << story();
+    startServos();
+}
+
+void WholeChainAtTheTable::connectTracker() {
+    window.studio().trackers.open(table.ready["tracker"].toString());
+    table.does("touch dimple 1"); // the pointer is in sight
+    pass(1s);
+}
 
 void WholeChainAtTheTable::measureProjector() {
     window.click("chain.link.projector");
@@ -246,10 +294,10 @@ QString lineFor(const char* link, const studio::LiveStep& step, std::size_t numb
     return "touch " + QString::fromStdString(step.name); // "dimple 2"
 }
 
-void WholeChainAtTheTable::touch(const char* link, const std::vector<studio::LiveStep>& steps) {
+void WholeChainAtTheTable::touch(const char* link,
+                                 std::vector<studio::LiveStep> (*stepsOf)(const Rig&, const Installation&)) {
+    const std::vector<studio::LiveStep> steps = stepsOf(rig(), chain.room());
     window.click(QString("chain.link.") + link);
-    table.does("touch dimple 1"); // the pointer is in sight
-    pass(1s);
     ASSERT_TRUE(chain.offers("Begin, with the tracker")) << chain.story();
     chain.next();
     ASSERT_TRUE(chain.offers("Cancel")) << chain.story();
@@ -271,32 +319,72 @@ void WholeChainAtTheTable::measureMoving(const char* link) {
     ASSERT_TRUE(eventually([&] { return chain.button() != "Cancel"; }, 1200s)) << chain.story();
 }
 
-TEST_F(WholeChainAtTheTable, IsMeasuredByTheMouseThroughTheSockets) {
-    if (!longTests()) GTEST_SKIP() << "minutes of hands and servos: LUMORPH_LONG_TESTS=1";
-    ASSERT_NO_FATAL_FAILURE(table.start({"--seed", "31", "--camera-size", "960x768"}));
-    setByHand(0, 0.0); // the show stands still
-    window.studio().devices.connectTo(table.ready["servos"].toString());
-    ASSERT_TRUE(offersStart()) << story();
-    startServos();
-    window.studio().trackers.open(table.ready["tracker"].toString());
+/// Beside the truth, in the camera's frame: what the world is, the first board says.
+void printProjector(const Installation& room, const Installation& truth) {
+    const auto seen = [](const Installation& of) {
+        return of.cameras.front().camera.cameraFromWorld *
+               glm::inverse(of.projectors.front().camera.cameraFromWorld); // camera from projector
+    };
+    const glm::dmat4 found = seen(room), real = seen(truth);
+    const glm::dmat3 turn = glm::dmat3(found) * glm::transpose(glm::dmat3(real));
+    std::printf("projector | place %.2f mm, direction %.3f degrees, focal length %.3f %%\n",
+                1e3 * glm::distance(glm::dvec3(found[3]), glm::dvec3(real[3])),
+                glm::degrees(std::acos(std::clamp(0.5 * (turn[0][0] + turn[1][1] + turn[2][2] - 1.0), -1.0, 1.0))),
+                100.0 * (room.projectors.front().camera.focal.x / truth.projectors.front().camera.focal.x - 1.0));
+}
+
+TEST_F(WholeChainAtTheTable, Part1ProjectorAndLight) {
     chain.open();
     window.click("chain.link.pointer");
     window.click("chain.way.live");
     ASSERT_NO_FATAL_FAILURE(measureProjector());
+    printProjector(chain.room(), table.truth);
+    keepAs("projector");
     ASSERT_NO_FATAL_FAILURE(measureLight());
-    const std::shared_ptr<const Rig> rig = window.state().rig.rig;
-    ASSERT_NO_FATAL_FAILURE(touch("pointer", studio::pointerSteps(*rig, chain.room())));
-    ASSERT_NO_FATAL_FAILURE(touch("tracker", studio::trackerSteps(*rig, chain.room())));
-    ASSERT_NO_FATAL_FAILURE(touch("device", studio::deviceSteps(*rig, chain.room())));
-    ASSERT_NO_FATAL_FAILURE(touch("eye", studio::eyeSteps(*rig, chain.room())));
+    const LightErrors errors = lightErrorsOf(chain.room(), table.truth);
+    std::printf("light | curve %.2f %% of white, gains %.2f %%, black %.3f %%, gains x colours %.2f %%\n",
+                100.0 * errors.curve, 100.0 * errors.gain, 100.0 * errors.black, 100.0 * errors.product);
+    keepAs("light");
+}
+
+TEST_F(WholeChainAtTheTable, Part2Touches) {
+    ASSERT_NO_FATAL_FAILURE(goOnAfter("light"));
+    connectTracker();
+    ASSERT_NO_FATAL_FAILURE(touch("pointer", studio::pointerSteps));
+    ASSERT_NO_FATAL_FAILURE(touch("tracker", studio::trackerSteps));
+    ASSERT_NO_FATAL_FAILURE(touch("device", studio::deviceSteps));
+    ASSERT_NO_FATAL_FAILURE(touch("eye", studio::eyeSteps));
+    window.click("chain.link.delays");
+    ASSERT_TRUE(chain.offers("Begin, with the camera")) << chain.story();
+    chain.next();
+    useAsMeasured("delays");
+    std::printf("delays | light %.1f ms, truth %.1f and what screen and show take\n",
+                1e3 * chain.room().predictionSeconds, 1e3 * table.truth.predictionSeconds);
+    keepAs("touches");
+}
+
+TEST_F(WholeChainAtTheTable, Part3Servos) {
+    ASSERT_NO_FATAL_FAILURE(connectServos());
+    ASSERT_NO_FATAL_FAILURE(goOnAfter("touches"));
+    connectTracker();
     ASSERT_NO_FATAL_FAILURE(measureMoving("servos"));
     useAsMeasured("servos");
-    ASSERT_NO_FATAL_FAILURE(measureMoving("check"));
-    window.screenshot("whole-table-check", 300ms);
-    const ShownError shown = shownError(rig, chain.room(), table.truth);
+    keepAs("servos");
+}
+
+TEST_F(WholeChainAtTheTable, Part4CheckAndShow) {
+    ASSERT_NO_FATAL_FAILURE(connectServos());
+    ASSERT_NO_FATAL_FAILURE(goOnAfter("servos"));
+    connectTracker();
+    const ShownError shown = shownError(window.state().rig.rig, chain.room(), table.truth);
     print("at the table", shown);
     EXPECT_LE(meanOf(shown.balls), 1.5);
     EXPECT_LE(meanOf(shown.skinPixels), 1.5);
+    const QJsonObject latency = table.tell("latency 15");
+    std::printf("motion to photon | %s\n", QJsonDocument(latency).toJson(QJsonDocument::Compact).constData());
+    ASSERT_NO_FATAL_FAILURE(measureMoving("check"));
+    std::printf("check: %s\n", chain.story().c_str());
+    window.screenshot("whole-table-check", 300ms);
 }
 
 } // namespace

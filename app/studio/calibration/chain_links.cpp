@@ -286,9 +286,10 @@ LinkWords readOf(const MeasuredDelays& measured) {
     LinkWords words = judged(measured);
     if (measured.refusal) return words;
     words.summary = QString::fromStdString(measured.summary);
-    words.figures = {{QObject::tr("From a frame to its light"), milliseconds(measured.light)},
-                     {QObject::tr("Age of poses when they arrive"), milliseconds(measured.tracker)},
-                     {QObject::tr("Both together, by a mark that follows a hand"), milliseconds(measured.mark)}};
+    words.figures = {{QObject::tr("From a frame to its light"), milliseconds(measured.light)}};
+    if (measured.isOfLightAlone()) return words;
+    words.figures.push_back({QObject::tr("Age of poses when they arrive"), milliseconds(measured.tracker)});
+    words.figures.push_back({QObject::tr("Both together, by a mark that follows a hand"), milliseconds(measured.mark)});
     if (measured.gain) {
         const auto& [with, without] = *measured.gain;
         words.summary = QObject::tr("Carried at 30 cm/s the device is lit %1 beside instead of %2.")
@@ -304,8 +305,9 @@ LinkWords readOf(const MeasuredDelays& measured) {
 
 ChainLink delaysLink() {
     ChainLink link = linkOf(LinkId::delays, "delays", "delays");
-    link.notConnected = QObject::tr("This version cannot time a connected camera and tracker: simulate delays in the "
-                                    "virtual lab, or enter them by hand in Scene.");
+    link.isOnTable = true;
+    link.onTable = QObject::tr("Here flashes alone are timed, in half a minute: how late the light is. How late poses "
+                               "and servos are stays as it was.");
     link.purpose =
         QObject::tr("How late light, poses and servos are: what moves is lit where it will be, not where it was.");
     link.warning = QObject::tr("Hands off at the end: the servos move");

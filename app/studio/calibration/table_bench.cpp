@@ -13,6 +13,7 @@
 
 #include "calibration/capture/boards_at_table.h"
 #include "calibration/capture/pose_capture.h"
+#include "calibration/delays/flash_capture.h"
 #include "calibration/light/camera_light.h"
 #include "calibration/servos/servo_measurement.h"
 #include "core/base/error.h"
@@ -157,7 +158,7 @@ public:
     TableBench(const TableParts& parts, const Installation& room, bool isMoved)
         : table_(parts, room), isSimulated_(isSimulatedCamera(room.cameras.front().address) ||
                                             (isMoved && parts.devices->profile().address.starts_with("sim://"))),
-          camera_(room.cameras.front().address), board_(parts.board) {}
+          camera_(room.cameras.front().address), board_(parts.board), drawSeconds_(parts.drawSeconds()) {}
 
     [[nodiscard]] RecordingSource source() const override {
         return {isSimulated_ ? RecordingSource::Kind::rehearsal : RecordingSource::Kind::table, "camera " + camera_,
@@ -192,9 +193,17 @@ public:
         }
         return light_.emplace(table_.camera(), std::move(displays), std::move(names), progress, table_.clock());
     }
-    [[nodiscard]] DelaysCapture recordDelays(const StageSite&, const Progress&) override {
-        throw DeviceError("delays at the table", "this version cannot time a connected camera and tracker",
-                          "enter them by hand in Scene; the virtual lab measures its own");
+    /// Of light alone: who would turn a board and carry a mark is not guided here.
+    [[nodiscard]] DelaysCapture recordDelays(const StageSite&, const Progress& progress) override {
+        PatternDisplay* display = table_.display(0);
+        if (!display) throw InvalidInput("projector 1", "it is switched off", "switch it on");
+        if (!(drawSeconds_ > 0.0))
+            throw DeviceError("the show", "nothing was drawn yet, so nobody knows how long that takes",
+                              "let it run on the projector for some seconds, then measure again");
+        DelaysCapture capture;
+        capture.flashes = recordFlashes(table_.camera(), *display, drawSeconds_, progress);
+        capture.seconds = capture.flashes.pictures.empty() ? 0.0 : capture.flashes.pictures.back().seconds;
+        return capture;
     }
 
 private:
@@ -202,6 +211,7 @@ private:
     std::optional<CameraLight> light_; ///< before the table goes
     bool isSimulated_;
     std::string camera_, board_;
+    double drawSeconds_;
 };
 
 /// What stands in the way of a measurement.

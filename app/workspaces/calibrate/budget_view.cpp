@@ -147,7 +147,8 @@ public:
         auto* back = new QPushButton(tr("Back"), this);
         back->setObjectName("budget.back");
         back->setToolTip(tr("To the chosen link"));
-        connect(back, &QPushButton::clicked, this, [this] { parts_.selection.setBudget(false); });
+        connect(back, &QPushButton::clicked, this,
+                [this] { parts_.selection.setPage(CalibrateSelection::Page::link); });
         page.layout->addWidget(makeHeading(tr("Where the millimetres come from"), this));
         auto* top = new QHBoxLayout;
         top->addWidget(total_);
@@ -161,7 +162,7 @@ public:
         connect(&parts.studio.document, &StudioDocument::changed, this, [this](StateParts changed) {
             if (changed & (StateParts(StatePart::rig) | StatePart::rigEdited | StatePart::installation)) makeStale();
         });
-        connect(&parts.selection, &CalibrateSelection::budgetChanged, this, [this] { follow(); });
+        connect(&parts.selection, &CalibrateSelection::pageChanged, this, [this] { follow(); });
         showBudget();
     }
 
@@ -305,7 +306,7 @@ private:
         if (!basis_) return parts_.studio.commands.find("rig.open")->trigger();
         if (!advised_) return;
         parts_.chain.choose(*advised_);
-        parts_.selection.setBudget(false);
+        parts_.selection.setPage(CalibrateSelection::Page::link);
     }
 
     CalibrateParts parts_;

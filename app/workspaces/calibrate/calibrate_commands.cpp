@@ -76,6 +76,19 @@ void doNextOfChain(const CalibrateParts& parts) {
     parts.chain.doNext();
 }
 
+/// Shows a page of the whole chain; checked while that page is shown.
+void addPageAction(const CalibrateParts& parts, const char* id, const QString& text, const char* icon,
+                   const QString& tip, CalibrateSelection::Page page) {
+    QAction* action = addCalibrateAction(parts, id, text, icon, tip, [parts, page] {
+        parts.selection.setWhole(true);
+        parts.selection.setPage(page);
+    });
+    action->setCheckable(true);
+    const auto follow = [parts, action, page] { action->setChecked(parts.selection.page() == page); };
+    QObject::connect(&parts.selection, &CalibrateSelection::pageChanged, action, follow);
+    QObject::connect(action, &QAction::triggered, action, follow); // a second click does not uncheck it
+}
+
 /// Each link by its own name in the palette.
 void addChainCommands(const CalibrateParts& parts) {
     for (std::size_t k = 1; k < chainLinks().size(); ++k) {
@@ -86,7 +99,7 @@ void addChainCommands(const CalibrateParts& parts) {
         QAction* action = parts.studio.commands.add(QString("calibrate.chain.") + link.key, "Calibrate: " + link.title,
                                                     options, [parts, k] {
                                                         parts.selection.setWhole(true);
-                                                        parts.selection.setBudget(false);
+                                                        parts.selection.setPage(CalibrateSelection::Page::link);
                                                         parts.chain.choose(k);
                                                     });
         action->setToolTip(link.purpose);
@@ -239,18 +252,14 @@ void addCalibrateCommands(const CalibrateParts& parts) {
                        "other, and verified",
                        [parts] {
                            parts.selection.setWhole(true);
-                           parts.selection.setBudget(false);
+                           parts.selection.setPage(CalibrateSelection::Page::link);
                        });
-    QAction* budget =
-        addCalibrateAction(parts, "calibrate.budget", "Where the millimetres come from", "target",
-                           "Each part's share of how far pictures slip, and what would help most", [parts] {
-                               parts.selection.setWhole(true);
-                               parts.selection.setBudget(true);
-                           });
-    budget->setCheckable(true);
-    const auto showsBudget = [parts, budget] { budget->setChecked(parts.selection.budget()); };
-    QObject::connect(&parts.selection, &CalibrateSelection::budgetChanged, budget, showsBudget);
-    QObject::connect(budget, &QAction::triggered, budget, showsBudget); // it is not switched off by itself
+    addPageAction(parts, "calibrate.connected", "What is connected", "link",
+                  "Projectors, camera, tracker, device and servos: what there is, and what is missing",
+                  CalibrateSelection::Page::connected);
+    addPageAction(parts, "calibrate.budget", "Where the millimetres come from", "target",
+                  "Each part's share of how far pictures slip, and what would help most",
+                  CalibrateSelection::Page::budget);
     QAction* rest2 = addCalibrateAction(parts, "calibrate.chain.rest", "Measure all that is missing", "play",
                                         "In the lab, one after the other; ends where something needs you",
                                         [parts] { parts.chain.measureRest(); });

@@ -33,14 +33,15 @@ public:
         if (std::exchange(whole_, whole) != whole) emit wholeChanged();
     }
 
-    /// Of the chain the budget is seen, in place of the chosen link.
-    [[nodiscard]] bool budget() const noexcept { return budget_; }
-    void setBudget(bool budget) {
-        if (std::exchange(budget_, budget) != budget) emit budgetChanged();
+    /// What the whole chain shows: the chosen link, what is connected, or the error budget.
+    enum class Page { link, connected, budget };
+    [[nodiscard]] Page page() const noexcept { return page_; }
+    void setPage(Page page) {
+        if (std::exchange(page_, page) != page) emit pageChanged();
     }
 
 signals:
-    void budgetChanged();
+    void pageChanged();
     void wholeChanged();
     void changed();
 
@@ -48,7 +49,7 @@ private:
     Show show_ = Show::live;
     std::string pose_;
     bool whole_ = false;
-    bool budget_ = false;
+    Page page_ = Page::link;
 };
 
 } // namespace lumorph::studio

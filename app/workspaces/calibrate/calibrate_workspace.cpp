@@ -40,6 +40,7 @@ CameraOpener cameraOpener(Studio& studio) {
 ChainService::TableOpener tableOpener(Studio& studio) {
     return [&studio](const Installation& room, bool isMoved) {
         TableParts parts{&studio.devices, displayOpener(studio), cameraOpener(studio)};
+        parts.drawSeconds = [&studio] { return 1e-3 * studio.show.usualDelay(); };
         parts.board = boardText(keptSetup(studio.settings, CaptureWay::camera).board);
         return openTable(parts, room, isMoved);
     };
@@ -98,7 +99,7 @@ std::unique_ptr<DriftService> CalibrateWorkspace::makeWatch() {
 void CalibrateWorkspace::checkRoom() {
     emit studio_.commands.workspaceWanted("calibrate");
     selection_.setWhole(true);
-    selection_.setBudget(false);
+    selection_.setPage(CalibrateSelection::Page::link);
     const auto& links = chainLinks();
     const auto found = std::ranges::find(links, LinkId::check, &ChainLink::id);
     chain_.choose(static_cast<std::size_t>(found - links.begin()));
@@ -184,11 +185,11 @@ QWidget* CalibrateWorkspace::makeCentralView() {
     };
     connect(&service_, &CalibrationService::changed, views, follow);
     follow();
-    auto* chain = new QStackedWidget;
-    chain->addWidget(makeChainView(parts()));
-    chain->addWidget(makeBudgetView(parts()));
-    const auto turn = [this, chain] { chain->setCurrentIndex(selection_.budget() ? 1 : 0); };
-    connect(&selection_, &CalibrateSelection::budgetChanged, chain, turn);
+    auto* chain = new QStackedWidget; // in the order of CalibrateSelection::Page
+    for (QWidget* page : {makeChainView(parts()), makeConnectedView(parts()), makeBudgetView(parts())})
+        chain->addWidget(page);
+    const auto turn = [this, chain] { chain->setCurrentIndex(static_cast<int>(selection_.page())); };
+    connect(&selection_, &CalibrateSelection::pageChanged, chain, turn);
     turn();
     return makeSwitched(views, chain);
 }

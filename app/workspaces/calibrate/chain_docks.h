@@ -11,6 +11,8 @@ namespace lumorph::studio {
 [[nodiscard]] QWidget* makeChainView(const CalibrateParts& parts);
 /// Where the chosen link is measured: in the lab, or from recordings, which are chosen here.
 [[nodiscard]] QWidget* makeChainSource(const CalibrateParts& parts, QWidget* parent);
+/// In place of the chosen link: what is connected, how good it is, and what is missing.
+[[nodiscard]] QWidget* makeConnectedView(const CalibrateParts& parts);
 /// In place of the chosen link: where the millimetres come from.
 [[nodiscard]] QWidget* makeBudgetView(const CalibrateParts& parts);
 [[nodiscard]] QWidget* makeChainResult(const CalibrateParts& parts);

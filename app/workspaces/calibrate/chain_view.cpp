@@ -95,11 +95,13 @@ public:
         whole->setContentsMargins(0, 0, 0, 0);
         const Column column = makeColumn(this);
         whole->addWidget(column.widget);
+        column.layout->addWidget(
+            makeCommandButton(parts.studio.commands.find("calibrate.connected"), "chain.connected", this));
         for (std::size_t k = 0; k < chainLinks().size(); ++k) {
             auto* row = new LinkRow(k, this);
             connect(row, &QPushButton::clicked, this, [this, k] {
                 parts_.chain.choose(k);
-                parts_.selection.setBudget(false);
+                parts_.selection.setPage(CalibrateSelection::Page::link);
             });
             rows_.push_back(row);
             if (isAside(k))
@@ -115,7 +117,7 @@ public:
         for (LinkRow* row : others_) column.layout->addWidget(row);
         column.layout->addStretch(1);
         connect(&parts.chain, &ChainService::changed, this, [this] { refresh(); });
-        connect(&parts.selection, &CalibrateSelection::budgetChanged, this, [this] { refresh(); });
+        connect(&parts.selection, &CalibrateSelection::pageChanged, this, [this] { refresh(); });
         refresh();
     }
 
@@ -129,7 +131,7 @@ private:
         const ChainState& state = parts_.chain.state();
         int number = 0;
         for (std::size_t k = 0; k < rows_.size(); ++k) {
-            const bool isChosen = state.chosen == k && !parts_.selection.budget();
+            const bool isChosen = state.chosen == k && parts_.selection.page() == CalibrateSelection::Page::link;
             // With one projector there are not several to be brought together.
             const bool isShown =
                 chainLinks()[k].id != LinkId::room || state.session.stands()[k].how != How::spare || isChosen;
@@ -209,7 +211,8 @@ private:
         const StageOutcome* outcome = state.session.outcomeAt(state.chosen);
         // Who touches things stands at the table, and reads the step from there.
         const bool touches = runs && state.live;
-        const QString large = touches ? state.live->title : link.warning;
+        const bool isStill = wayOf(state, state.chosen) == LinkWay::live && !link.isMoved;
+        const QString large = touches ? state.live->title : isStill ? QString() : link.warning;
         warning_->setText(large);
         warning_->setVisible(!large.isEmpty() && (runs || !outcome));
         QString text;
