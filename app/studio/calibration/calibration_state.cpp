@@ -576,7 +576,8 @@ namespace {
 
 /// What is said and needs nothing done.
 bool isRemark(const Finding& finding) {
-    return finding.cause == Cause::passedOver || finding.cause == Cause::boardKind;
+    return finding.cause == Cause::passedOver || finding.cause == Cause::boardKind ||
+           finding.cause == Cause::pointSuspicious; // left out
 }
 
 } // namespace

@@ -22,11 +22,11 @@ struct TableParts {
     std::function<std::unique_ptr<PatternDisplay>(std::size_t projector)> openDisplay;
     /// In the thread that measures; the address is the room's, such as "/dev/video0".
     CameraOpener openCamera;
-    /// Seconds from a frame of the show to its picture in a projector's window, of late; 0: nothing was shown yet.
-    std::function<double()> drawSeconds = [] { return 0.0; };
     /// By which pictures take time to be seen.
     std::shared_ptr<const Clock> clock = std::make_shared<SteadyClock>();
     std::string board = "chess:9x7:25"; ///< the printed board, millimetres
+    /// Seconds from a frame of the show to its picture in a projector's window, of late; 0: nothing was shown yet.
+    std::function<double()> drawSeconds = [] { return 0.0; };
 };
 
 /// Why nothing can be measured with what is connected, in a sentence with what to do; empty: it can.
