@@ -195,6 +195,8 @@ protected:
         studio::editInstallation(window.studio().document, "Before", [&](Installation& into) { into = room; });
         chain.open();
         ASSERT_EQ(chain.badge("projector"), "Simulated");
+        window.click("chain.link.pointer");
+        window.click("chain.way.live");
         window.studio().outputs.useScreen(0, QGuiApplication::primaryScreen()->name());
         window.studio().notices.at("output").front().actions.front().run(); // the only screen: it asks
         ASSERT_TRUE(eventually([&] { return window.studio().outputs.window(0) != nullptr; }));
@@ -288,7 +290,8 @@ void WholeChainAtTheTable::measureLight() {
 
 /// What a hand does for a step.
 QString lineFor(const char* link, const studio::LiveStep& step, std::size_t number) {
-    if (step.ends == studio::LiveStep::Ends::swung) return "swing dimple 1";
+    if (step.ends == studio::LiveStep::Ends::swung)
+        return "swing dimple 9"; // not one of those that it rests in afterwards
     if (step.corner) return QString("touch corner %1").arg(number + 1);
     if (step.dot) return std::string_view(link) == "eye" ? "aim" : "touch dot";
     return "touch " + QString::fromStdString(step.name); // "dimple 2"
