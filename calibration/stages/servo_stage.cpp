@@ -12,12 +12,19 @@ namespace lumorph {
 
 namespace {
 
+/// Where photographs of a state take seconds. Between nine levels the curve of a lever or a servo is straight to a
+/// tenth of a degree.
+constexpr int kPhotographedSteps = 8;
+
 MeasuredStage measureServos(const StageSite& site, Bench& bench, const Progress& progress) {
     StageRecording recording = stages::emptyRecording("servos", site, bench);
     const StageSite seen{site.rig, stages::roomWithCamera(site, recording.source)};
     const CalibratedCamera &camera = seen.room.cameras.front().camera, &projector = seen.room.projectors.front().camera;
     ServoPlanOptions options;
-    if (const int pictures = bench.picturesOfLook(seen); pictures > 0) options.pictures = pictures;
+    if (const int pictures = bench.picturesOfLook(seen); pictures > 0) {
+        options.pictures = pictures;
+        options.steps = kPhotographedSteps;
+    }
     RecordedTable light;
     light.columns = stages::kLightColumns;
     std::size_t looks = 0;

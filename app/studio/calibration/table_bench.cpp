@@ -12,6 +12,7 @@
 #include <QTimer>
 
 #include "calibration/capture/boards_at_table.h"
+#include "calibration/capture/picture_light.h"
 #include "calibration/capture/pose_capture.h"
 #include "calibration/delays/flash_capture.h"
 #include "calibration/light/camera_light.h"
@@ -97,6 +98,13 @@ public:
     }
     [[nodiscard]] const std::shared_ptr<const Clock>& clock() const { return clock_; }
 
+    /// By a projector's white, once: a camera that was off since it was calibrated has forgotten it.
+    void findExposureBy(PatternDisplay& display, const Progress& progress) {
+        if (std::exchange(isExposed_, true)) return;
+        display.show(cv::Mat(display.size(), CV_8U, cv::Scalar(255)), progress);
+        (void)findExposure(camera(), progress);
+    }
+
     void stand(std::span<const double> commanded, const Progress& progress) override {
         progress.report(0.0, "hands off: the servos move");
         const int ticket = ++tickets_;
@@ -120,6 +128,7 @@ public:
             throw InvalidInput("projector " + std::to_string(projector + 1), "it is switched off", "switch it on");
         for (auto& [k, display] : displays_)
             if (k != projector) display->show(cv::Mat::zeros(display->size(), CV_8U), progress);
+        findExposureBy(*lit->second, progress);
         auto& [captured, capture] = captures_[projector];
         if (!capture || !(captured == order)) {
             PoseCaptureSettings settings;
@@ -147,6 +156,7 @@ private:
     std::shared_ptr<Driven> driven_ = std::make_shared<Driven>();
     std::shared_ptr<Driver> driver_;
     int tickets_ = 0;
+    bool isExposed_ = false;
     std::map<std::size_t, std::shared_ptr<PatternDisplay>> displays_;
     std::unique_ptr<CaptureCamera> camera_; ///< opened by the first photograph
     std::map<std::size_t, std::pair<CaptureOrder, std::unique_ptr<PoseCapture>>> captures_;
@@ -171,6 +181,7 @@ public:
         for (std::size_t k = 0; k < site.room.projectors.size(); ++k)
             if (PatternDisplay* display = table_.display(k))
                 boards.projectors.push_back({site.room.projectors[k].name, display});
+        if (!boards.projectors.empty()) table_.findExposureBy(*boards.projectors.front().display, progress);
         boards.board = board_;
         boards.clock = table_.clock();
         return captureBoards(boards, progress);
