@@ -29,6 +29,8 @@ Installation tableRoom() {
     return room;
 }
 
+constexpr double kUsualExposure = 1.0 / 60.0; // seconds, in which the lab's camera sees enough
+
 /// What screen and camera of a test share.
 struct Table {
     Table(const Rig& shownRig, Installation really) : rig(shownRig), truth(std::move(really)) {}
@@ -42,6 +44,7 @@ struct Table {
     std::optional<CheckLab> lab;
     /// Somebody knocks against the camera in looks at patterns from .. to.
     int patterns = 0, bumpFrom = 0, bumpTo = 0;
+    double exposed = 0.001; ///< seconds: a camera that was switched on just now sees hardly anything
     std::shared_ptr<ManualClock> clock = std::make_shared<ManualClock>();
 
     cv::Mat look() {
@@ -54,6 +57,7 @@ struct Table {
         }
         const glm::ivec2 size = truth.projectors.front().camera.size;
         cv::Mat picture = lab->photograph(0, shown.empty() ? cv::Mat::zeros(size.y, size.x, CV_8U) : shown);
+        picture.convertTo(picture, -1, exposed / kUsualExposure);
         double darkest = 0.0, lightest = 0.0;
         if (!shown.empty()) cv::minMaxLoc(shown.reshape(1), &darkest, &lightest);
         patterns += darkest < lightest ? 1 : 0;
@@ -77,6 +81,8 @@ public:
     }
     [[nodiscard]] std::string name() const override { return "table"; }
     [[nodiscard]] cv::Size size() const override { return {}; }
+    [[nodiscard]] std::optional<Exposures> exposures() const override { return Exposures{1e-4, 0.1}; }
+    void setExposure(double seconds) override { table_.exposed = seconds; }
 
 private:
     Table& table_;

@@ -306,9 +306,18 @@ void ChainService::beginLive(std::size_t link) {
     }
 }
 
+/// The room with the device where it is tracked, once both that and its body are known in it.
+Installation ChainService::roomAsTracked() const {
+    Installation room = *document_.state().installation;
+    const bool isKnown = room.origins.tracker.isCalibrated() && room.origins.deviceBody.isCalibrated();
+    const auto& frame = loop_.frame();
+    if (isKnown && frame && live_.obstacle({PoseRole::device}).isEmpty()) room.worldFromDevice = frame->worldFromDevice;
+    return room;
+}
+
 void ChainService::beginOnTable(std::size_t link) {
     const std::shared_ptr<const Rig>& rig = document_.state().rig.rig;
-    const Installation& room = *document_.state().installation;
+    const Installation room = roomAsTracked();
     state_.session.forget(link);
     try {
         if (!rig) throw InvalidInput("the device", "there is none", "open a rig");
