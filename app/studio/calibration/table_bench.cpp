@@ -142,6 +142,8 @@ public:
             CapturedPose pose = capture->capture("check", progress);
             if (pose.isSound()) return std::move(pose.images);
             if (left == 0 || !isPassing(pose.findings.refusal->cause)) throw CaptureRefused(*pose.findings.refusal);
+            // A machine that is busier than before shows its pictures later.
+            if (pose.findings.refusal->cause == Cause::lateFrame) (void)capture->measureSettle(progress);
             for (auto calm = std::chrono::milliseconds{0}; calm < kCalms; calm += kPause) {
                 progress.throwIfCancelled();
                 std::this_thread::sleep_for(kPause);
