@@ -187,7 +187,7 @@ TableCamera::~TableCamera() = default;
 
 cv::Size TableCamera::size() const { return data_->size(); }
 
-cv::Mat1b TableCamera::photograph(double exposureSeconds, double gainDecibels) {
+TableCamera::Picture TableCamera::photograph(double exposureSeconds, double gainDecibels) {
     Data& data = *data_;
     std::unique_lock lock(data.mutex);
     const Microseconds late(std::llround(1e6 * data.table.truth().room.predictionSeconds));
@@ -232,7 +232,7 @@ cv::Mat1b TableCamera::photograph(double exposureSeconds, double gainDecibels) {
     data.working = std::min(late, std::max(took, data.working - data.working / 16));
     lock.unlock();
     std::this_thread::sleep_for(ready - begun - took);
-    return picture;
+    return {std::move(picture), ready};
 }
 
 } // namespace lumorph::table

@@ -25,8 +25,10 @@ public:
     /// its order. Throws DeviceError for a camera that gives none, DataError for a recording that is broken or has come
     /// to its end, Cancelled.
     [[nodiscard]] virtual cv::Mat grab(const Progress& progress) = 0;
-    /// When the exposure of the picture that `grab` gave last began, by the steady clock; empty for a camera that does
-    /// not say: then it came to be some time before `grab` gave it.
+    /// The next frame that comes, whenever its exposure began, for who wants all of them; throws as `grab`.
+    [[nodiscard]] virtual cv::Mat next(const Progress& progress) { return grab(progress); }
+    /// When the exposure of the picture that was given last began, by the steady clock; empty for a camera that does
+    /// not say: then it came to be some time before that.
     [[nodiscard]] virtual std::optional<Microseconds> takenAt() const { return std::nullopt; }
     [[nodiscard]] virtual std::string name() const = 0;
     /// Pixels; empty before the first frame of a camera that does not say.

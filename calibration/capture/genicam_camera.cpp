@@ -150,30 +150,8 @@ public:
     }
     ~GenicamCamera() override { close(); }
 
-    [[nodiscard]] cv::Mat grab(const Progress& progress) override {
-        const gint64 called = g_get_real_time();
-        const auto until = std::chrono::steady_clock::now() + kFrameWithin;
-        int incomplete = 0;
-        while (std::chrono::steady_clock::now() < until) {
-            progress.throwIfCancelled();
-            if (isLost_) reopen(progress, until);
-            ArvBuffer* buffer = arv_stream_timeout_pop_buffer(stream_.get(), kPopWait);
-            if (!buffer) continue;
-            const bool isWhole = arv_buffer_get_status(buffer) == ARV_BUFFER_STATUS_SUCCESS;
-            cv::Mat picture;
-            const gint64 began = isWhole ? exposureEnd(buffer) - exposure_ : 0;
-            if (isWhole && began >= called && ++frames_ > kFirstFrames) picture = pictureOf(buffer, *format_);
-            arv_stream_push_buffer(stream_.get(), buffer);
-            if (!picture.empty()) {
-                began_ = began;
-                return picture;
-            }
-            if (!isWhole && ++incomplete >= kMostIncomplete)
-                throw error("its pictures arrive incomplete",
-                            "use a network of its own for it, or raise the MTU of the network card to 9000");
-        }
-        throw error("gives no picture within 10 seconds", "look at its cable and power, and at its trigger settings");
-    }
+    [[nodiscard]] cv::Mat grab(const Progress& progress) override { return frameSince(g_get_real_time(), progress); }
+    [[nodiscard]] cv::Mat next(const Progress& progress) override { return frameSince(0, progress); }
     [[nodiscard]] std::optional<Microseconds> takenAt() const override {
         if (began_ == 0) return std::nullopt;
         return SteadyClock().now() - Microseconds(g_get_real_time() - began_); // that clock may be set
@@ -196,6 +174,30 @@ private:
         return {"camera " + address_, why, remedy};
     }
 
+    /// The next whole frame whose exposure began at `earliest` or later, microseconds of this machine's clock.
+    [[nodiscard]] cv::Mat frameSince(gint64 earliest, const Progress& progress) {
+        const auto until = std::chrono::steady_clock::now() + kFrameWithin;
+        int incomplete = 0;
+        while (std::chrono::steady_clock::now() < until) {
+            progress.throwIfCancelled();
+            if (isLost_) reopen(progress, until);
+            ArvBuffer* buffer = arv_stream_timeout_pop_buffer(stream_.get(), kPopWait);
+            if (!buffer) continue;
+            const bool isWhole = arv_buffer_get_status(buffer) == ARV_BUFFER_STATUS_SUCCESS;
+            cv::Mat picture;
+            const gint64 began = isWhole ? exposureEnd(buffer) - exposure_ : 0;
+            if (isWhole && began >= earliest && ++frames_ > kFirstFrames) picture = pictureOf(buffer, *format_);
+            arv_stream_push_buffer(stream_.get(), buffer);
+            if (!picture.empty()) {
+                began_ = began;
+                return picture;
+            }
+            if (!isWhole && ++incomplete >= kMostIncomplete)
+                throw error("its pictures arrive incomplete",
+                            "use a network of its own for it, or raise the MTU of the network card to 9000");
+        }
+        throw error("gives no picture within 10 seconds", "look at its cable and power, and at its trigger settings");
+    }
     /// Microseconds of this machine's clock, the end of its exposure at the latest: the camera's own time, by the frame
     /// that came soonest after it. The machine may have been busy when this one came.
     gint64 exposureEnd(ArvBuffer* buffer) {

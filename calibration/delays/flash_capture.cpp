@@ -22,7 +22,8 @@ constexpr Microseconds kSettles{600'000}; // a picture is seen as it stays
 constexpr Microseconds kAfter{700'000};   // the last flash, until nothing of it is on its way
 constexpr double kLeastContrast = 8.0;    // grey levels
 constexpr unsigned kSeed = 44;
-constexpr double kArrivalSigma = 0.03; // seconds: telephones and network cameras take 20 to 100 ms to send
+constexpr double kLongestExposure = 1.0 / 30.0; // seconds
+constexpr double kArrivalSigma = 0.03;          // seconds: telephones and network cameras take 20 to 100 ms to send
 
 double secondsOf(Microseconds time) { return 1e-6 * static_cast<double>(time.count()); }
 
@@ -93,7 +94,11 @@ FlashRecording recordFlashes(CaptureCamera& camera, PatternDisplay& display, dou
     progress.report(0.0, "looking where the light falls");
     display.show(flatGrey(display.size(), 255), progress);
     waitUntil(clock.now() + kSettles, progress);
-    const std::optional<double> exposure = findExposure(camera, progress);
+    std::optional<double> exposure = findExposure(camera, progress);
+    if (exposure && *exposure > kLongestExposure) { // dark pictures in time tell more than bright ones too late
+        exposure = kLongestExposure;
+        camera.setExposure(*exposure);
+    }
     const cv::Mat1b lit = litPart(camera, display, progress);
     const Microseconds origin = clock.now();
     FlashRecording recording;
@@ -107,7 +112,7 @@ FlashRecording recordFlashes(CaptureCamera& camera, PatternDisplay& display, dou
         std::async(std::launch::async, [&] { return flash(display, origin, count, flashes); });
     const std::shared_ptr<void> ends(nullptr, [&ended](void*) { ended.request_stop(); }); // where the camera is lost
     while (flashing.wait_for(std::chrono::seconds(0)) != std::future_status::ready) {
-        const cv::Mat picture = greyOf(camera.grab(progress));
+        const cv::Mat picture = greyOf(camera.next(progress));
         const Microseconds taken =
             camera.takenAt().value_or(clock.now() - Microseconds(std::llround(1e6 * recording.exposure)));
         if (!camera.takenAt()) recording.arrivalSigma = kArrivalSigma;
