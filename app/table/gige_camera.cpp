@@ -55,10 +55,7 @@ struct GigeCamera::Data {
         std::size_t none = 0; // it has no length before it is filled
         auto* to = static_cast<std::uint8_t*>(const_cast<void*>(arv_buffer_get_image_data(buffer, &none)));
         const int width = arv_buffer_get_image_width(buffer), height = arv_buffer_get_image_height(buffer);
-        auto [picture, ended] = static_cast<Data*>(self)->camera.photograph(1e-6 * exposure, gain);
-        // As a sensor says it, however late this machine is.
-        const std::int64_t late = (SteadyClock().now() - ended).count();
-        arv_buffer_set_timestamp(buffer, static_cast<guint64>(g_get_real_time() - late) * 1000U);
+        cv::Mat1b picture = static_cast<Data*>(self)->camera.photograph(1e-6 * exposure, gain);
         if (picture.cols != width || picture.rows != height) // the client has cut a part out
             picture = picture(cv::Rect(0, 0, std::min(width, picture.cols), std::min(height, picture.rows)));
         std::fill_n(to, width * height, std::uint8_t{0});

@@ -92,7 +92,7 @@ void MjpegServer::send(int listener, const std::stop_token& stop) {
     auto next = std::chrono::steady_clock::now();
     while (!stop.stop_requested()) {
         std::vector<std::uint8_t> jpeg;
-        cv::imencode(".jpg", camera_.photograph(kExposure).grey, jpeg, {cv::IMWRITE_JPEG_QUALITY, kQuality});
+        cv::imencode(".jpg", camera_.photograph(kExposure), jpeg, {cv::IMWRITE_JPEG_QUALITY, kQuality});
         std::this_thread::sleep_for(kLate);
         const std::string head =
             "--frame\r\nContent-Type: image/jpeg\r\nContent-Length: " + std::to_string(jpeg.size());

@@ -187,7 +187,7 @@ TableCamera::~TableCamera() = default;
 
 cv::Size TableCamera::size() const { return data_->size(); }
 
-TableCamera::Picture TableCamera::photograph(double exposureSeconds, double gainDecibels) {
+cv::Mat1b TableCamera::photograph(double exposureSeconds, double gainDecibels) {
     Data& data = *data_;
     std::unique_lock lock(data.mutex);
     const Microseconds late(std::llround(1e6 * data.table.truth().room.predictionSeconds));
@@ -232,7 +232,7 @@ TableCamera::Picture TableCamera::photograph(double exposureSeconds, double gain
     data.working = std::min(late, std::max(took, data.working - data.working / 16));
     lock.unlock();
     std::this_thread::sleep_for(ready - begun - took);
-    return {std::move(picture), ready};
+    return picture;
 }
 
 } // namespace lumorph::table

@@ -31,13 +31,8 @@ public:
     TableCamera(const Table& table, const ScreenEye& eye, std::size_t camera, const TableCameraOptions& options = {});
     ~TableCamera();
 
-    struct Picture {
-        cv::Mat1b grey;        ///< linear
-        Microseconds ended{0}; ///< of its exposure, by the steady clock
-    };
-    /// Exposed for so many seconds until it is given back; where this machine is busy it is given back later than that.
-    /// Any thread, one at a time.
-    [[nodiscard]] Picture photograph(double exposureSeconds, double gainDecibels = 0.0);
+    /// 8-bit grey, linear; exposed for so many seconds until it is given back. Any thread, one at a time.
+    [[nodiscard]] cv::Mat1b photograph(double exposureSeconds, double gainDecibels = 0.0);
     [[nodiscard]] cv::Size size() const;
 
 private:
