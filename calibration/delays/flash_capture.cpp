@@ -29,7 +29,7 @@ double secondsOf(Microseconds time) { return 1e-6 * static_cast<double>(time.cou
 
 cv::Mat flatGrey(cv::Size size, int value) { return {size, CV_8U, cv::Scalar(value)}; }
 
-/// Waits where nobody is told to hurry.
+/// Sleeps until then in short steps, so that it can be cancelled.
 void waitUntil(Microseconds time, const Progress& progress) {
     constexpr Microseconds kStep{2'000};
     for (const SteadyClock clock; clock.now() < time; std::this_thread::sleep_for(kStep)) progress.throwIfCancelled();
@@ -103,7 +103,7 @@ FlashRecording recordFlashes(CaptureCamera& camera, PatternDisplay& display, dou
     const Microseconds origin = clock.now();
     FlashRecording recording;
     recording.exposure = exposure.value_or(recording.exposure);
-    // The screen is told by another thread, or pictures would be missed while it is slow.
+    // Another thread shows the flashes: PatternDisplay::show blocks, and camera frames would be missed meanwhile.
     const Progress part = progress.part(0.1, 1.0);
     std::stop_source ended;
     const Progress flashes([&part](double share, std::string_view stage) { part.report(share, stage); },

@@ -22,8 +22,8 @@ struct FlashRecording {
     /// Seconds by which the first and last row of the region are exposed after the first of the picture: 0 for a camera
     /// with a global shutter.
     double firstRow = 0.0, lastRow = 0.0;
-    /// Seconds (sigma) by which nobody knows how late all times of pictures are: of a camera that does not say when it
-    /// took them, so that what they needed to come counts as delay.
+    /// Standard deviation, seconds, of an unknown offset that all picture times share: of a camera without time stamps,
+    /// whose transfer time counts as delay.
     double arrivalSigma = 0.0;
 };
 

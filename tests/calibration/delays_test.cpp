@@ -306,7 +306,7 @@ TEST(DelaysLab, AllDelaysComeOutAsTheLabHasThem) {
     }
 }
 
-// As at a table, where nobody turns a board.
+// A connected camera records flashes alone: no board, mark or servo steps.
 TEST(DelaysLab, FlashesAloneTimeTheLightAndLeaveAllElse) {
     Installation believed = withLabCamera(defaultInstallation());
     believed.trackerSeconds = 0.005;

@@ -323,17 +323,20 @@ void WholeChainAtTheTable::measureMoving(const char* link) {
 }
 
 /// Beside the truth, in the camera's frame: what the world is, the first board says.
-void printProjector(const Installation& room, const Installation& truth) {
+void judgeProjector(const Installation& room, const Installation& truth) {
     const auto seen = [](const Installation& of) {
         return of.cameras.front().camera.cameraFromWorld *
                glm::inverse(of.projectors.front().camera.cameraFromWorld); // camera from projector
     };
     const glm::dmat4 found = seen(room), real = seen(truth);
     const glm::dmat3 turn = glm::dmat3(found) * glm::transpose(glm::dmat3(real));
-    std::printf("projector | place %.2f mm, direction %.3f degrees, focal length %.3f %%\n",
-                1e3 * glm::distance(glm::dvec3(found[3]), glm::dvec3(real[3])),
-                glm::degrees(std::acos(std::clamp(0.5 * (turn[0][0] + turn[1][1] + turn[2][2] - 1.0), -1.0, 1.0))),
+    const double millimetres = 1e3 * glm::distance(glm::dvec3(found[3]), glm::dvec3(real[3]));
+    const double degrees =
+        glm::degrees(std::acos(std::clamp(0.5 * (turn[0][0] + turn[1][1] + turn[2][2] - 1.0), -1.0, 1.0)));
+    std::printf("projector | place %.2f mm, direction %.3f degrees, focal length %.3f %%\n", millimetres, degrees,
                 100.0 * (room.projectors.front().camera.focal.x / truth.projectors.front().camera.focal.x - 1.0));
+    EXPECT_LE(millimetres, 1.0);
+    EXPECT_LE(degrees, 0.05);
 }
 
 TEST_F(WholeChainAtTheTable, Part1ProjectorAndLight) {
@@ -341,12 +344,13 @@ TEST_F(WholeChainAtTheTable, Part1ProjectorAndLight) {
     window.click("chain.link.pointer");
     window.click("chain.way.live");
     ASSERT_NO_FATAL_FAILURE(measureProjector());
-    printProjector(chain.room(), table.truth);
+    judgeProjector(chain.room(), table.truth);
     keepAs("projector");
     ASSERT_NO_FATAL_FAILURE(measureLight());
     const LightErrors errors = lightErrorsOf(chain.room(), table.truth);
     std::printf("light | curve %.2f %% of white, gains %.2f %%, black %.3f %%, gains x colours %.2f %%\n",
                 100.0 * errors.curve, 100.0 * errors.gain, 100.0 * errors.black, 100.0 * errors.product);
+    EXPECT_LE(errors.curve, 0.005);
     keepAs("light");
 }
 
@@ -384,9 +388,11 @@ TEST_F(WholeChainAtTheTable, Part4CheckAndShow) {
     EXPECT_LE(meanOf(shown.balls), 1.5);
     EXPECT_LE(meanOf(shown.skinPixels), 1.5);
     const QJsonObject latency = table.tell("latency 15");
+    EXPECT_TRUE(latency["ok"].toBool());
     std::printf("motion to photon | %s\n", QJsonDocument(latency).toJson(QJsonDocument::Compact).constData());
     ASSERT_NO_FATAL_FAILURE(measureMoving("check"));
     std::printf("check: %s\n", chain.story().c_str());
+    EXPECT_EQ(chain.story().find("could not be measured"), std::string::npos) << chain.story();
     window.screenshot("whole-table-check", 300ms);
 }
 

@@ -6,6 +6,7 @@
 #include <QObject>
 #include <QStringList>
 
+#include "app/studio/calibration/live_service.h"
 #include "calibration/capture/capture_camera.h"
 
 namespace lumorph::studio {
@@ -22,18 +23,6 @@ ConnectedPart namedPart(const QString& kind, const QString& title, ConnectedPart
 }
 
 QString pixelsWords(const glm::ivec2& size) { return QObject::tr("%1 × %2 pixels").arg(size.x).arg(size.y); }
-
-QString roleWord(PoseRole role) {
-    switch (role) {
-    case PoseRole::head:
-        return QObject::tr("head");
-    case PoseRole::device:
-        return QObject::tr("device");
-    case PoseRole::pointer:
-        break;
-    }
-    return QObject::tr("pointer");
-}
 
 ConnectedPart projectorPart(const InstalledProjector& projector, const ConnectedFacts::Output& output,
                             std::size_t number) {
@@ -144,10 +133,10 @@ ConnectedPart trackerPart(const ConnectedFacts& facts) {
         for (const SeenBody& body : facts.bodies)
             if (body.role == role && body.age < kSeenNow) names << QString::fromStdString(body.name);
         if (names.isEmpty())
-            unseen << roleWord(role);
+            unseen << wordOf(role);
         else
-            seen << QObject::tr("%1 as %2").arg(names.join(both), roleWord(role));
-        if (names.size() > 1) twice << roleWord(role);
+            seen << QObject::tr("%1 as %2").arg(names.join(both), wordOf(role));
+        if (names.size() > 1) twice << wordOf(role);
     }
     for (const SeenBody& body : facts.bodies)
         if (!body.role && body.age < kSeenNow) others << QString::fromStdString(body.name);

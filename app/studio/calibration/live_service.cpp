@@ -19,18 +19,6 @@ constexpr double kSeenLately = 1.0;             // seconds
 constexpr std::size_t kMostArrivals = 20'000;   // poses, while the window stands still
 constexpr int kDotRadius = 5, kRingRadius = 26; // projector pixels
 
-QString wordOf(PoseRole role) {
-    switch (role) {
-    case PoseRole::head:
-        return QObject::tr("head");
-    case PoseRole::device:
-        return QObject::tr("device");
-    case PoseRole::pointer:
-        break;
-    }
-    return QObject::tr("pointer");
-}
-
 QString joined(const std::vector<PoseRole>& roles) {
     QStringList words;
     for (const PoseRole role : roles) words << wordOf(role);
@@ -54,6 +42,18 @@ QImage dotPicture(const glm::ivec2& size, const glm::dvec2& pixel) {
 }
 
 } // namespace
+
+QString wordOf(PoseRole role) {
+    switch (role) {
+    case PoseRole::head:
+        return QObject::tr("head");
+    case PoseRole::device:
+        return QObject::tr("device");
+    case PoseRole::pointer:
+        break;
+    }
+    return QObject::tr("pointer");
+}
 
 /// What the trackers' threads bring until the window's takes it.
 struct LiveService::Arrivals {

@@ -18,6 +18,9 @@ class QTimer;
 
 namespace lumorph::studio {
 
+/// "head", as sentences say it.
+[[nodiscard]] QString wordOf(PoseRole role);
+
 /// Where a measurement with the connected tracker stands.
 struct LiveStand {
     std::size_t step = 0, steps = 0;
