@@ -100,4 +100,10 @@ void GigeCamera::setPlugged(bool plugged) {
     plugged ? data_->plug() : data_->unplug();
 }
 
+TableCamera& GigeCamera::sensor() const { return data_->camera; }
+
+void GigeCamera::losePackets(double share) {
+    if (data_->network != nullptr) g_object_set(data_->network, "gvsp-lost-ratio", share, nullptr);
+}
+
 } // namespace lumorph::table

@@ -22,6 +22,9 @@ public:
     [[nodiscard]] std::string address() const;
     /// Takes it from the network, and puts it back.
     void setPlugged(bool plugged);
+    [[nodiscard]] TableCamera& sensor() const;
+    /// Of its packets with pictures, so many are lost on their way; 0 to 1.
+    void losePackets(double share);
 
 private:
     struct Data;

@@ -17,12 +17,16 @@ namespace lumorph::table {
 
 namespace {
 
-constexpr double kStill = 0.002;     // of a stroke: less is not worth new rays
-constexpr double kStillPlace = 1e-5; // metres
-constexpr double kStillTurn = 1e-5;  // of a quaternion's part
-constexpr double kLift = 2e-5;       // metres of the paper above the table, and of the ink above the paper
-constexpr double kUnit = 1e-3;       // metres, of a board's lengths
-constexpr int kCircleCells = 40;     // of a spacing: each is all paper or all ink
+constexpr double kStill = 0.002;        // of a stroke: less is not worth new rays
+constexpr double kStillPlace = 1e-5;    // metres
+constexpr double kStillTurn = 1e-5;     // of a quaternion's part
+constexpr double kLift = 2e-5;          // metres of the paper above the table, and of the ink above the paper
+constexpr double kUnit = 1e-3;          // metres, of a board's lengths
+constexpr int kCircleCells = 40;        // of a spacing: each is all paper or all ink
+constexpr double kAutomaticGrey = 90.0; // mean of a picture to which an automatic exposure goes
+constexpr double kAutomaticPace = 0.3;  // of the way, a picture
+constexpr double kAutomaticReach = 8.0; // times brighter or darker
+constexpr glm::vec3 kNight{1.0F, 0.72F, 0.45F};
 constexpr glm::vec3 kInk{0.08F};
 constexpr glm::vec3 kPaper{0.85F};
 
@@ -112,6 +116,14 @@ cv::Mat1f vignette(cv::Size size, double share) {
     return light;
 }
 
+Image atNight(const Image& picture) {
+    Image warm = picture;
+    for (Image::Pixel& pixel : warm.pixels())
+        for (int channel = 0; channel < 3; ++channel)
+            pixel[channel] = static_cast<std::uint8_t>(std::lround(kNight[channel] * pixel[channel]));
+    return warm;
+}
+
 } // namespace
 
 struct TableCamera::Data {
@@ -131,6 +143,8 @@ struct TableCamera::Data {
     Microseconds working{0};                          ///< that a picture takes to be worked out
     cv::Mat1f noise, corners;
     std::mt19937 dice;
+    bool setsExposure = false, seesNightLight = false;
+    double automatic = 1.0; ///< what its own exposure makes of the light
 
     void stand(const Standing& now);
     [[nodiscard]] cv::Size size() const { return {camera.size.x, camera.size.y}; }
@@ -187,6 +201,18 @@ TableCamera::~TableCamera() = default;
 
 cv::Size TableCamera::size() const { return data_->size(); }
 
+void TableCamera::setSetsExposure(bool does) {
+    const std::lock_guard lock(data_->mutex);
+    data_->setsExposure = does;
+    data_->automatic = 1.0;
+}
+
+void TableCamera::setSeesNightLight(bool does) {
+    const std::lock_guard lock(data_->mutex);
+    data_->seesNightLight = does;
+    data_->thrown.assign(data_->thrown.size(), nullptr); // to be shown anew
+}
+
 cv::Mat1b TableCamera::photograph(double exposureSeconds, double gainDecibels) {
     Data& data = *data_;
     std::unique_lock lock(data.mutex);
@@ -205,12 +231,18 @@ cv::Mat1b TableCamera::photograph(double exposureSeconds, double gainDecibels) {
     for (std::size_t k = 0; k < data.thrown.size(); ++k) {
         auto picture = now.isCovered ? data.none : data.eye.at(k, shown).picture;
         if (picture == data.thrown[k]) continue;
-        data.lab->show(k, *picture);
+        data.lab->show(k, data.seesNightLight ? atNight(*picture) : *picture);
         data.thrown[k] = std::move(picture);
     }
     cv::Mat1f light = lightIn(*data.lab, data.sight);
     const double grey = data.levels * exposureSeconds / data.options.usualSeconds * std::pow(10.0, gainDecibels / 20.0);
     light = grey * light.mul(data.corners);
+    if (data.setsExposure) {
+        const double wanted = kAutomaticGrey / std::max(1.0, data.automatic * cv::mean(light)[0]);
+        data.automatic =
+            std::clamp(data.automatic * std::pow(wanted, kAutomaticPace), 1.0 / kAutomaticReach, kAutomaticReach);
+        light *= data.automatic;
+    }
     if (data.options.blur > 0.0) cv::GaussianBlur(light, light, {}, data.options.blur);
     const cv::Rect part({static_cast<int>(data.dice() % static_cast<unsigned>(data.size().width)),
                          static_cast<int>(data.dice() % static_cast<unsigned>(data.size().height))},

@@ -35,6 +35,11 @@ public:
     [[nodiscard]] cv::Mat1b photograph(double exposureSeconds, double gainDecibels = 0.0);
     [[nodiscard]] cv::Size size() const;
 
+    /// It sets its exposure by itself, whatever it is told, as a camera does whose automatic is on.
+    void setSetsExposure(bool does);
+    /// Its projectors' screens are warm, as computers make them at night: less green, half of the blue.
+    void setSeesNightLight(bool does);
+
 private:
     struct Data;
     std::unique_ptr<Data> data_;

@@ -63,7 +63,7 @@ std::string_view TableLines::help() {
            "carry X Y Z [DEGREES [SECONDS]] | latency [TIMES] | hand X Y Z|off | cover on|off | fault KEY on|off | "
            "quit; places are "
            "metres, faults: tracker_dropout, tracker_swap, servo_jammed, servo_reversed, board_reset, "
-           "camera_unplugged";
+           "camera_unplugged, auto_exposure, night_light, packets_lost PERCENT|off";
 }
 
 glm::dvec3 TableLines::dot() const {
@@ -137,9 +137,16 @@ void TableLines::fault(const Words& words) {
     if (key == "servo_reversed")
         return parts_.servos.setFault(on ? ServoPort::Fault::reversed : ServoPort::Fault::none);
     if (key == "board_reset") return parts_.servos.reboot();
-    if (key != "camera_unplugged")
-        throw InvalidInput("fault " + key, "the table has no such fault", std::string(help()));
-    for (const auto& camera : parts_.cameras) camera->setPlugged(!on);
+    const bool isCamera =
+        key == "packets_lost" || key == "auto_exposure" || key == "night_light" || key == "camera_unplugged";
+    if (!isCamera) throw InvalidInput("fault " + key, "the table has no such fault", std::string(help()));
+    const double lost = key == "packets_lost" && on ? 0.01 * words.number(2) : 0.0; // before anything is changed
+    for (const auto& camera : parts_.cameras) {
+        if (key == "packets_lost") camera->losePackets(lost);
+        if (key == "auto_exposure") camera->sensor().setSetsExposure(on);
+        if (key == "night_light") camera->sensor().setSeesNightLight(on);
+        if (key == "camera_unplugged") camera->setPlugged(!on);
+    }
 }
 
 std::string TableLines::latency(const Words& words) {

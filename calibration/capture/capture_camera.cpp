@@ -29,6 +29,15 @@ void silenceVideo() {
 
 } // namespace
 
+void requireReadable(const std::string& camera, cv::Size picture) {
+    constexpr int kLeastSide = 200; // pixels: no board is read in less
+    if (std::min(picture.width, picture.height) >= kLeastSide) return;
+    throw DeviceError("camera " + camera,
+                      "gives pictures of " + std::to_string(picture.width) + " x " + std::to_string(picture.height) +
+                          " pixels",
+                      "at least " + std::to_string(kLeastSide) + " along each side are needed: choose a larger size");
+}
+
 void CaptureCamera::setExposure(double /*seconds*/) {
     throw DeviceError("camera " + name(), "its exposure cannot be set from here", "use another camera");
 }
@@ -104,7 +113,7 @@ private:
         if (picture.depth() != CV_8U || (picture.channels() != 1 && picture.channels() != 3))
             throw DeviceError("camera " + path_, "gives pictures that are not 8-bit grey or colour",
                               "choose another format at the camera");
-        size_ = picture.size();
+        requireReadable(path_, size_ = picture.size());
         return picture.clone(); // the driver's buffer is used again
     }
     [[nodiscard]] Microseconds interval() const {

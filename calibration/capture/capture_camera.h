@@ -46,6 +46,9 @@ public:
     [[nodiscard]] virtual std::vector<std::string> automatics() const { return {}; }
 };
 
+/// Throws DeviceError for pictures in which no board can be read: a side of less than 200 pixels.
+void requireReadable(const std::string& camera, cv::Size picture);
+
 /// A picture of a camera as 8-bit grey.
 [[nodiscard]] cv::Mat greyOf(const cv::Mat& picture);
 /// An 8-bit grey picture as an image.

@@ -32,7 +32,6 @@ constexpr int kMostIncomplete = 20;
 constexpr int kFirstFrames =
     3;                       ///< after a start: their way takes longer, and how long it usually takes is not known yet
 constexpr gint64 kDrift = 5; ///< microseconds a frame, of the camera's clock against this machine's
-constexpr int kLeastSide = 200; ///< pixels: no board is read in less
 
 struct Unref {
     void operator()(void* object) const {
@@ -192,10 +191,11 @@ private:
                 began_ = began;
                 return picture;
             }
-            if (!isWhole && ++incomplete >= kMostIncomplete)
-                throw error("its pictures arrive incomplete",
-                            "use a network of its own for it, or raise the MTU of the network card to 9000");
+            if (!isWhole && ++incomplete >= kMostIncomplete) break;
         }
+        if (incomplete > 0)
+            throw error("its pictures arrive incomplete",
+                        "use a network of its own for it, or raise the MTU of the network card to 9000");
         throw error("gives no picture within 10 seconds", "look at its cable and power, and at its trigger settings");
     }
     /// Microseconds of this machine's clock, the end of its exposure at the latest: the camera's own time, by the frame
@@ -244,10 +244,7 @@ private:
         if (!failure) arv_camera_set_region(camera_.get(), 0, 0, width, height, failure.place());
         gint x = 0, y = 0; // some cannot be told
         arv_camera_get_region(camera_.get(), &x, &y, &width, &height, failure.place());
-        size_ = {width, height};
-        if (std::min(width, height) < kLeastSide)
-            throw error("gives pictures of " + std::to_string(width) + " x " + std::to_string(height) + " pixels",
-                        "at least " + std::to_string(kLeastSide) + " along each side are needed");
+        requireReadable(address_, size_ = {width, height});
     }
 
     void switchAutomaticsOff() {

@@ -307,7 +307,7 @@ public:
         const Microseconds called = clock_.now();
         for (int broken = 0; broken < kMostBroken; ++broken)
             if (cv::Mat picture = decoded(next(called + kLate, progress)); !picture.empty()) {
-                size_ = picture.size();
+                requireReadable(name_, size_ = picture.size());
                 return picture;
             }
         throw unreadable();

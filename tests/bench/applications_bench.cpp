@@ -11,7 +11,7 @@ namespace lumorph::bench {
 namespace {
 
 constexpr double kStep = 1.0 / 60.0;
-constexpr int kFrames = 60 * 60;
+constexpr int kFramesPlayed = 60 * 60;
 
 /// What a visitor does in a frame: keys pressed and released, a pointer that moves.
 std::vector<ShowInput> visitorDoes(int frame) {
@@ -39,7 +39,7 @@ std::vector<double> frameTimes(const Demo& demo) {
     moment.rig = contents.rig;
     moment.installation = std::make_shared<const Installation>(defaultInstallation());
     std::vector<double> milliseconds;
-    for (int k = 0; k < kFrames; ++k) {
+    for (int k = 0; k < kFramesPlayed; ++k) {
         const std::vector<ShowInput> inputs = visitorDoes(k);
         moment.inputs = inputs;
         const double begun = threadSeconds();

@@ -22,7 +22,7 @@ namespace {
 constexpr glm::ivec2 kSize(1280, 800);
 constexpr glm::ivec2 kFullHd(1920, 1080);
 constexpr int kWarmUp = 5;
-constexpr int kFrames = 20;
+constexpr int kFramesDrawn = 20;
 
 /// The tablet with its flaps half up, moving, in a scene with one projector and one shadow map; the viewer sways.
 class Show {
@@ -92,7 +92,7 @@ FrameTimes measure(const Scene& scene, glm::ivec2 size) {
     renderer.setEyeSize(size);
     Show show(scene, size);
     std::vector<double> pose, upload, shadow, eye, projectors, mixed, whole, processor;
-    for (int number = 0; number < kWarmUp + kFrames; ++number) {
+    for (int number = 0; number < kWarmUp + kFramesDrawn; ++number) {
         const ShowFrame* frame = nullptr;
         const double posing = 1e3 * secondsOf([&] { frame = &show.at(number); });
         const double busy = processSeconds();
@@ -107,7 +107,7 @@ FrameTimes measure(const Scene& scene, glm::ivec2 size) {
     }
     // Waiting for each pass by itself takes a little longer, so the frames above do not.
     renderer.setMeasuring(true);
-    for (int number = kWarmUp; number < kWarmUp + kFrames; ++number) {
+    for (int number = kWarmUp; number < kWarmUp + kFramesDrawn; ++number) {
         renderer.draw(show.at(number));
         const SpatialTimes times = renderer.times();
         upload.push_back(times.upload);
@@ -132,7 +132,7 @@ void addSoftwareRow(Row row, const Scene& scene, Report& report) {
     row.notes = {times.parts(),
                  "processor time of the drawing, all threads together: " + fixed(times.processor, 1) +
                      " ms; so two cores make " + fixed(2e3 / times.processor, 1) + " frames/s at the very best",
-                 "1280 x 800 pixels each for eye and projector, one shadow map, " + std::to_string(kFrames) +
+                 "1280 x 800 pixels each for eye and projector, one shadow map, " + std::to_string(kFramesDrawn) +
                      " frames, " + times.driver.renderer};
     fail(row.name, times, report);
     report.add(std::move(row));
@@ -144,7 +144,7 @@ void addMixedRow(const std::string& name, Report& report) {
     Row row{name, "share of the projector pass for pixels on folds and outlines", 100.0 * times.mixedShare, "%"};
     row.bar = atMost(5.0);
     row.notes = {"of " + fixed(times.projectors, 2) + " ms, in the bundled sea with its flaps half up, " +
-                 std::to_string(kFrames) + " frames, " + times.driver.renderer};
+                 std::to_string(kFramesDrawn) + " frames, " + times.driver.renderer};
     fail(name, times, report);
     report.add(std::move(row));
 }
@@ -155,7 +155,7 @@ void addFullHdRow(const std::string& name, Report& report) {
     const double passes = times.shadow + times.eye + times.projectors;
     Row row{name, "the tablet in full HD: shadow, eye and projector pass", passes, "ms", {}, {}, {times.parts()}};
     if (!times.driver.software) row.aim = atMost(2.0);
-    row.notes.push_back("1920 x 1080 pixels each for eye and projector, " + std::to_string(kFrames) + " frames, " +
+    row.notes.push_back("1920 x 1080 pixels each for eye and projector, " + std::to_string(kFramesDrawn) + " frames, " +
                         times.driver.renderer +
                         (times.driver.software ? "; the aim of 2 ms is a graphics card's" : ""));
     report.add(std::move(row));

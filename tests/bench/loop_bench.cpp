@@ -70,15 +70,15 @@ private:
 };
 
 Row measure(Loop& loop, const std::string& name, const std::string& what, Microseconds budget) {
-    constexpr int kFrames = 120;
+    constexpr int kFramesLooped = 120;
     std::vector<double> whole;
     std::vector<std::vector<double>> stages(Loop::kStageCount);
-    for (int number = 0; number < kFrames; ++number) {
+    for (int number = 0; number < kFramesLooped; ++number) {
         const std::vector<double> seconds = loop.frame(number, budget);
         whole.push_back(1e3 * std::accumulate(seconds.begin(), seconds.end(), 0.0));
         for (std::size_t s = 0; s < seconds.size(); ++s) stages[s].push_back(1e3 * seconds[s]);
     }
-    std::string note = "medians of " + std::to_string(kFrames) + " frames, ms:";
+    std::string note = "medians of " + std::to_string(kFramesLooped) + " frames, ms:";
     for (std::size_t s = 0; s < stages.size(); ++s)
         note += std::string(" ") + Loop::kStages[s] + " " + fixed(median(stages[s]), 3);
     return {name, what, median(whole), "ms", atMost(3.0), {}, {note}};

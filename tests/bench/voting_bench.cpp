@@ -15,7 +15,7 @@ namespace {
 constexpr std::size_t kDistinctLevels = 4;
 
 /// Medians for one target, seconds.
-struct Measured {
+struct VotingTimes {
     double literal = 0.0;
     double vectorised = 0.0;
     double voting = 0.0;
@@ -32,7 +32,7 @@ std::vector<TargetVolume> variedTargets(const Device& device) {
     return targets;
 }
 
-Measured measure(const Device& device, const DenseField& dense, const TargetVolume& target) {
+VotingTimes measureVoting(const Device& device, const DenseField& dense, const TargetVolume& target) {
     const std::vector<float> wanted = denseTarget(device.field, target.voxels);
     const std::vector<std::size_t> reachable = reachableVoxels(dense, wanted);
     EquationSums sums;
@@ -72,7 +72,7 @@ void benchVoting(const Filter& filter, Report& report) {
     std::vector<double> milliseconds;
     std::vector<double> nanoseconds;
     for (const TargetVolume& target : targets) {
-        const Measured of = measure(*device, dense, target);
+        const VotingTimes of = measureVoting(*device, dense, target);
         literalRatios.push_back(of.literal / of.voting);
         vectorisedRatios.push_back(of.vectorised / of.voting);
         milliseconds.push_back(1e3 * of.voting);

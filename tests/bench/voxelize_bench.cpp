@@ -47,13 +47,13 @@ template <typename Inside> std::size_t differences(const VoxelFrame& frame, cons
     return count;
 }
 
-struct Measured {
+struct VoxelTimes {
     double ours = 0.0; ///< seconds
     double openVdb = 0.0;
     std::string note;
 };
 
-Measured measure(const std::string& name, const VoxelFrame& frame, const TriangleMesh& mesh) {
+VoxelTimes measureVoxels(const std::string& name, const VoxelFrame& frame, const TriangleMesh& mesh) {
     const VdbInput input(frame, mesh);
     SolidVoxelizer voxelizer;
     BitColumns bits;
@@ -87,14 +87,14 @@ void benchVoxelize(const Filter& filter, Report& report) {
     Field field; // placing a mesh needs the frame and the rest surface alone
     field.frame = frameOf(rig.reach(), 33);
     field.restSurface = boundingBox(rig.restMesh().positions).max.y;
-    std::vector<Measured> all{measure("bumpy ellipsoid", field.frame, fitted(field, bumpyEllipsoid()))};
+    std::vector<VoxelTimes> all{measureVoxels("bumpy ellipsoid", field.frame, fitted(field, bumpyEllipsoid()))};
     if (const auto rocker = sharedMesh("rocker-arm.obj"))
-        all.push_back(measure("rocker-arm, divided", field.frame, fitted(field, dividedTo(*rocker, kTriangles))));
+        all.push_back(measureVoxels("rocker-arm, divided", field.frame, fitted(field, dividedTo(*rocker, kTriangles))));
 
     double worstRatio = INFINITY;
     double slowest = 0.0;
     std::vector<std::string> notes;
-    for (const Measured& of : all) {
+    for (const VoxelTimes& of : all) {
         worstRatio = std::min(worstRatio, of.openVdb / of.ours);
         slowest = std::max(slowest, of.ours);
         notes.push_back(of.note);

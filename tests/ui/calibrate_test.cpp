@@ -30,7 +30,7 @@ namespace {
 namespace fs = std::filesystem;
 using namespace std::chrono_literals;
 
-constexpr glm::ivec2 kSmall{640, 360}; // pixels of the projector, so that a capture takes seconds
+constexpr glm::ivec2 kSmall{480, 270}; // pixels of the projector, so that a capture takes seconds
 constexpr auto kBoard = "chess:9x7:25";
 
 Installation smallRoom() {
@@ -209,6 +209,9 @@ TEST_F(Calibrate, AFolderWithAFaultIsRefusedByCausePlaceAndRemedy) {
     writeLabCapture(capturer, folder);
     ASSERT_EQ(capturer.faults().size(), 1U);
     const std::string view = capturer.faults().front().view;
+    const fs::path later = folder / "pose_02"; // is photographed while the others are judged
+    ASSERT_NE(view, "pose_02");
+    fs::rename(later, w.folder / "later");
 
     w.studio.click("calibrate.way.folder");
     ASSERT_TRUE(w.offers("Choose a folder"));
@@ -228,6 +231,19 @@ TEST_F(Calibrate, AFolderWithAFaultIsRefusedByCausePlaceAndRemedy) {
     ASSERT_TRUE(w.offers("Use this calibration")) << w.story();
     EXPECT_NE(w.studio.findNow<QLabel>("calibrate.headline"), nullptr);
     w.studio.screenshot("calibrate-mended");
+    fs::create_directory(later);
+    const std::vector<fs::path> photographs = entriesOf(w.folder / "later");
+    for (std::size_t k = 0; k < photographs.size(); ++k) {
+        fs::rename(photographs[k], later / photographs[k].filename());
+        if (k != 4) continue;
+        const QString sofar = QString("pose_02 has 5 of %1 photographs so far").arg(photographs.size());
+        ASSERT_TRUE(eventually([&] { return w.studio.text("calibrate.card.text").contains(sofar); }, 60s)) << w.story();
+        w.studio.screenshot("calibrate-arriving");
+    }
+    const auto isListed = [&] { return w.studio.findNow<QListWidget>("calibrate.poses.list")->count() == 5; };
+    ASSERT_TRUE(eventually(isListed)) << "what came later is read by itself: " << w.story();
+    ASSERT_TRUE(w.offers("Use this calibration")) << w.story();
+    EXPECT_FALSE(w.story().find("so far") != std::string::npos) << w.story();
 
     // From here on what was read is enough: the images may be gone.
     fs::rename(folder, w.folder / "away");

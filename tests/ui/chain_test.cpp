@@ -177,7 +177,7 @@ TEST_F(Chain, TwoProjectorsAndOneInAMirrorAreCalibratedByTheMouse) {
     studio::editInstallation(window.studio().document, "A projector of few pixels", [](Installation& edited) {
         InstalledProjector& first = edited.projectors.front();
         first.lens = first.pose = {Origin::Way::assumed, "of few pixels", ""}; // not entered by anybody
-        first.camera = withSize(first.camera, {480, 270});
+        first.camera = withSize(first.camera, {400, 225});
         edited.projectors.push_back(first);
         edited.projectors.back().name = "Side";
     });
@@ -209,6 +209,12 @@ TEST_F(Chain, TwoProjectorsAndOneInAMirrorAreCalibratedByTheMouse) {
 // R24, R25, R26: from nothing to a show that is right in the lab as it truly is, all of its errors on at once.
 TEST_F(Chain, AllThatIsMissingIsMeasuredOneAfterTheOther) {
     ASSERT_TRUE(eventually([&] { return window.state().rig.rig && window.studio().jobs.running().empty(); }, 60s));
+    studio::editInstallation(window.studio().document, "A projector of fewer pixels", [](Installation& edited) {
+        InstalledProjector& projector = edited.projectors.front();
+        projector.lens = projector.pose = {Origin::Way::assumed, "of fewer pixels", ""}; // not entered by anybody
+        projector.camera =
+            withSize(projector.camera, {640, 400}); // the lab's camera follows: photographs take their time
+    });
     SoundMixer& mixer = window.studio().sound.mixer();
     mixer.setBoard(std::make_shared<const SoundBoard>(SoundBoard::synthesised()));
     for (const studio::ChainLink& link : studio::chainLinks()) {

@@ -34,7 +34,7 @@ using test::eventually;
 struct FieldStory : testing::Test {
     void openStory() {
         window.command("How the field works");
-        ASSERT_TRUE(eventually([&] { return window.findNow<StoryCanvas>("story.canvas") != nullptr && told(); }, 30s));
+        ASSERT_TRUE(eventually([&] { return window.findNow<StoryCanvas>("story.canvas") != nullptr && told(); }, 120s));
         canvas = window.find<StoryCanvas>("story.canvas");
         dialog = window.findNow<QDialog>("story.window");
         ASSERT_NE(dialog, nullptr);

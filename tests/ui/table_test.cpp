@@ -1,6 +1,12 @@
+#include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <cstdio>
+#include <functional>
 #include <future>
+#include <memory>
+#include <string>
+#include <vector>
 
 #include <QAbstractButton>
 #include <QGuiApplication>
@@ -13,6 +19,7 @@
 #include <opencv2/core.hpp>
 
 #include "calibration/capture/capture_camera.h"
+#include "calibration/capture/pose_capture.h"
 #include "calibration/delays/flash_capture.h"
 #include "core/geometry/calibrated_camera.h"
 #include "core/loop/pose_stream.h"
@@ -46,12 +53,18 @@ public:
     void light(const QRect& square, const QColor& color = Qt::white) {
         square_ = square;
         color_ = color;
+        picture_ = {};
+        update();
+    }
+    void light(const QImage& picture) {
+        picture_ = picture;
         update();
     }
 
 protected:
     void paintEvent(QPaintEvent* /*event*/) override {
         QPainter painter(this);
+        if (!picture_.isNull()) return painter.drawImage(0, 0, picture_);
         painter.fillRect(QRect(QPoint(), size()), Qt::black);
         painter.fillRect(square_, color_);
     }
@@ -59,6 +72,7 @@ protected:
 private:
     QRect square_;
     QColor color_ = Qt::white;
+    QImage picture_; ///< if any, instead
 };
 
 class TableProgramTest : public testing::Test, protected TableProgram {};
@@ -177,10 +191,11 @@ public:
     [[nodiscard]] cv::Size size() const override { return {thrown_.width(), thrown_.height()}; }
     void show(const cv::Mat& picture, const Progress& progress) override {
         progress.throwIfCancelled();
-        const int grey = picture.at<std::uint8_t>(0, 0);
+        const QImage image = QImage(picture.data, picture.cols, picture.rows, static_cast<qsizetype>(picture.step),
+                                    QImage::Format_Grayscale8)
+                                 .copy();
         QMetaObject::invokeMethod(
-            &thrown_, [this, grey] { thrown_.light(QRect(QPoint(), thrown_.size()), QColor(grey, grey, grey)); },
-            Qt::QueuedConnection);
+            &thrown_, [this, image] { thrown_.light(image); }, Qt::QueuedConnection);
     }
     void clear() override {}
 
@@ -207,6 +222,115 @@ TEST_F(TableProgramTest, LightIsTimedByFlashes) {
     EXPECT_GT(delay.seconds, truth.predictionSeconds - 0.005);
     EXPECT_LT(delay.seconds, truth.predictionSeconds + 0.060);
     EXPECT_LT(delay.sigma, 0.015);
+}
+
+/// What happens while a pose is photographed, and what may be said of it: keys of causes, "sound", or a few words of an
+/// error.
+struct Mishap {
+    const char* what;
+    std::function<void()> happens, ends;
+    std::vector<std::string> said;
+};
+
+std::string keyOrWords(const std::function<CapturedPose()>& capture) {
+    try {
+        const CapturedPose pose = capture();
+        return pose.findings.refusal ? std::string(keyOf(pose.findings.refusal->cause)) : "sound";
+    } catch (const CaptureRefused& refused) { // while it measured how late light comes
+        return std::string(keyOf(refused.finding().cause));
+    } catch (const DeviceError& error) {
+        return error.what();
+    }
+}
+
+// What goes wrong in a room goes wrong here behind the sockets, in the middle of a pose; what is said is compared with
+// what was done.
+TEST_F(TableProgramTest, MishapsWhileAPoseIsPhotographedAreNamed) {
+    if (!longTests()) GTEST_SKIP() << "minutes of photographs: LUMORPH_LONG_TESTS=1";
+    int named = 0, all = 0;
+    for (const char* seed : {"41", "42", "43"}) {
+        TableProgram table;
+        ASSERT_NO_FATAL_FAILURE(table.start({"--seed", seed, "--camera-size", "640x512"}));
+        Thrown thrown;
+        ASSERT_TRUE(QTest::qWaitForWindowExposed(&thrown));
+        table.does("board 1");
+        const auto cover = [&](const QRect& place) {
+            return [&thrown, place, message = std::make_shared<std::unique_ptr<Thrown>>()](bool covers) {
+                if (!covers) return message->reset();
+                *message = std::make_unique<Thrown>();
+                (*message)->setGeometry(place);
+                (*message)->raise();
+            };
+        };
+        const QSize size = thrown.size();
+        const auto message = cover({size.width() / 3, size.height() / 3, size.width() / 3, size.height() / 4});
+        const auto asleep = cover({QPoint(), size});
+        const auto fault = [&](const QString& key, const QString& how = "on") {
+            return [&table, key, how] { table.does("fault " + key + " " + how); };
+        };
+        const std::vector<Mishap> mishaps = {
+            {"packets lost, 0.1 %", fault("packets_lost", "0.1"), fault("packets_lost", "off"), {"sound"}},
+            {"packets lost, 1 %",
+             fault("packets_lost", "1"),
+             fault("packets_lost", "off"),
+             {"sound", "arrive incomplete"}},
+            {"camera unplugged and back",
+             [&] {
+                 table.does("fault camera_unplugged on");
+                 pass(2s);
+                 table.does("fault camera_unplugged off");
+             },
+             [] {},
+             {"sound"}},
+            {"automatic exposure", fault("auto_exposure"), fault("auto_exposure", "off"), {"exposure_drifts"}},
+            {"night light", fault("night_light"), fault("night_light", "off"), {"exposure_drifts"}},
+            {"a message over the picture",
+             [&] { message(true); },
+             [&] { message(false); },
+             {"wrong_order", "hand_in_view"}},
+            {"screen asleep", [&] { asleep(true); }, [&] { asleep(false); }, {"board_unlit", "late_frame"}},
+            {"another board", [&] { table.does("board 2"); }, [&] { table.does("board 1"); }, {"rig_moved"}},
+            {"a hand",
+             [&] { table.does("hand 0 0.1 0"); },
+             [&] { table.does("hand off"); },
+             {"wrong_order", "hand_in_view"}},
+        };
+        std::atomic<int> shots{0};
+        const auto photograph = [&] {
+            shots = 0;
+            return std::async(std::launch::async, [&] {
+                const auto camera = openCaptureCamera(table.address("uri"));
+                ThrownPatterns display(thrown);
+                PoseCaptureSettings settings;
+                settings.order = parsePattern("graycode", display.size());
+                settings.board = parseCalibrationBoard("chess:9x7:25");
+                settings.onShot = [&](const Shot&) { ++shots; };
+                PoseCapture capture(*camera, display, settings);
+                return keyOrWords([&] { return capture.capture("pose_1"); });
+            });
+        };
+        for (const Mishap& mishap : mishaps) {
+            std::future<std::string> said = photograph();
+            const auto ended = [&] { return said.wait_for(0s) == std::future_status::ready; };
+            ASSERT_TRUE(eventually([&] { return shots >= 9 || ended(); }, 60s)) << mishap.what;
+            EXPECT_FALSE(ended()) << mishap.what << ", too early: seed " << seed;
+            mishap.happens();
+            ASSERT_TRUE(eventually(ended, 120s)) << mishap.what;
+            mishap.ends();
+            const std::string words = said.get();
+            const bool isNamed = std::ranges::any_of(
+                mishap.said, [&](const std::string& one) { return words.find(one) != std::string::npos; });
+            ++all;
+            named += isNamed ? 1 : 0;
+            std::printf("%s, seed %s, at shot %d: %s%s\n", mishap.what, seed, shots.load(), words.c_str(),
+                        isNamed ? "" : "   <-- NOT NAMED");
+            std::fflush(stdout);
+        }
+        std::future<std::string> after = photograph();
+        ASSERT_TRUE(eventually([&] { return after.wait_for(0s) == std::future_status::ready; }, 120s));
+        EXPECT_EQ(after.get(), "sound") << "all is as it was: seed " << seed;
+    }
+    EXPECT_GE(10 * named, 9 * all);
 }
 
 // Light, servos and check look through the same camera.

@@ -247,6 +247,9 @@ void CalibrationService::beginAnew() {
 /// Those that come now get a folder of their own.
 void CalibrationService::forgetPoses() {
     jobs_.stop("save");
+    watch_ = nullptr;
+    incomplete_.clear();
+    state_.arriving.clear();
     store_ = std::make_shared<PoseStore>(isSimulatedWay(state_.setup));
     state_.poses.clear();
     passedOver_.clear();
@@ -372,10 +375,14 @@ void CalibrationService::read(bool anew) {
     cancel();
     clearResults();
     state_.isReadWhole = false;
+    if (anew) state_.arriving.clear(), incomplete_.clear();
+    if (anew || !watch_)
+        watch_ = std::make_unique<FolderWatch>(
+            state_.setup.folder, [this](const FolderWatch::Contents& arrived) { return takeArrived(arrived); });
     std::erase_if(state_.poses, [&](const CalibrationPose& pose) { return !pose.leftOut && (anew || !pose.seen); });
     if (anew)
         for (CalibrationPose& pose : state_.poses) pose.seen = nullptr; // read when it is put back in
-    std::vector<std::string> without;                                   // left out, or read before
+    std::vector<std::string> without = incomplete_;                     // left out, or read before
     for (const CalibrationPose& pose : state_.poses) without.push_back(pose.name);
     state_.work = CalibrationState::Work::reading;
     state_.stage = tr("Looking for images");
@@ -424,6 +431,33 @@ void CalibrationService::read(bool anew) {
     emit changed();
 }
 
+bool CalibrationService::takeArrived(const FolderWatch::Contents& arrived) {
+    if (state_.work != CalibrationState::Work::none || state_.isImported || !problemOf(state_.setup).isEmpty())
+        return false;
+    const auto wanted = static_cast<int>(orderOf(state_.setup).images.size());
+    bool isWhole = false;
+    for (const auto& [name, content] : arrived) {
+        std::erase(incomplete_, name);
+        if (content.files < wanted) {
+            incomplete_.push_back(name);
+            state_.arriving = tr("%1 has %2 of %3 photographs so far.")
+                                  .arg(QString::fromStdString(name))
+                                  .arg(content.files)
+                                  .arg(wanted);
+            continue;
+        }
+        isWhole = true;
+        for (CalibrationPose& pose : state_.poses)
+            if (pose.name == name) pose.seen = nullptr; // photographed again
+    }
+    if (incomplete_.empty()) state_.arriving.clear();
+    if (isWhole)
+        read(false);
+    else
+        emit changed();
+    return true;
+}
+
 void CalibrationService::takeRead(ReadCapture capture) {
     state_.isReadWhole = true;
     passedOver_ = std::move(capture.warnings); // the poses have their own
@@ -457,6 +491,7 @@ void CalibrationService::openBench() {
     }
     live_.words = openingTitle(setup.way);
     isOpening_ = true;
+    benchPixels_ = room->projectors[projector()].camera.size;
     const int attempt = ++benchTry_;
     jobs_.runWith<std::shared_ptr<CaptureBench>>(
         "open", kPlace, openingTitle(setup.way),
@@ -479,6 +514,12 @@ void CalibrationService::openBench() {
             setTrouble(error);
         });
     emit liveChanged();
+}
+
+bool CalibrationService::isBenchOutdated() const {
+    const auto& projectors = document_.state().installation->projectors;
+    return (bench_ || isOpening_) && projector() < projectors.size() &&
+           projectors[projector()].camera.size != benchPixels_;
 }
 
 void CalibrationService::look() {
@@ -569,6 +610,10 @@ void CalibrationService::photograph() {
     else
         withdrawVerdicts();
     if (projector() >= document_.state().installation->projectors.size()) return tellNoProjector();
+    if (isBenchOutdated()) {
+        beginAnew();
+        rest_ = rest;
+    }
     if (!bench_) {
         if (!isOpening_) openBench();
         isAsked_ = isOpening_; // done once it is open
@@ -985,6 +1030,7 @@ bool CalibrationService::isInRoom() const {
 
 /// Undo takes a calibration out of the room, redo puts it back.
 void CalibrationService::followDocument() {
+    if (isBenchOutdated() && state_.work == CalibrationState::Work::none) return beginAnew();
     const auto& projectors = document_.state().installation->projectors;
     std::string room;
     if (projector() < projectors.size() && projectors[projector()].lens.isCalibrated())

@@ -14,6 +14,7 @@
 #include "app/studio/base/notices.h"
 #include "app/studio/base/settings.h"
 #include "app/studio/calibration/calibration_state.h"
+#include "app/studio/calibration/folder_watch.h"
 #include "app/studio/calibration/simulated_question.h"
 #include "app/studio/document/job_slots.h"
 #include "app/studio/document/studio_document.h"
@@ -112,8 +113,12 @@ private:
     /// Images of a folder; of poses that were read already only where it is read `anew`.
     void read(bool anew = true);
     void takeRead(ReadCapture capture);
+    /// Poses that were photographed or copied into the folder meanwhile, or are others now.
+    [[nodiscard]] bool takeArrived(const FolderWatch::Contents& arrived);
     void setSpacing(double spacing);
     void openBench();
+    /// The room's projector has other pixels since the bench was opened.
+    [[nodiscard]] bool isBenchOutdated() const;
     void tellNoProjector();
     void look();
     void letGo();
@@ -146,6 +151,7 @@ private:
     SimulatedQuestion question_; ///< of the result
     LiveSight live_;
     std::shared_ptr<CaptureBench> bench_;
+    glm::ivec2 benchPixels_{0};        ///< of the projector, when it was opened
     std::shared_ptr<PoseStore> store_; ///< of the poses of this calibration
     QString saveTrouble_;              ///< subject of the notice about it
     QString importTrouble_;            ///< subject of the notice about the file that was to be imported last
@@ -157,12 +163,14 @@ private:
     bool isOpening_ = false; ///< the bench
     bool isAsked_ = false;   ///< a photograph, while it was opened
     bool isLooking_ = false;
-    bool isStale_ = false;            ///< what is looked at has changed meanwhile: another look follows
-    bool isFlatChosen_ = false;       ///< by the user; else it is the first pose
-    bool rest_ = false;               ///< the poses that are missing follow by themselves
-    int benchTry_ = 0;                ///< counts, so that a bench that comes too late is not taken
-    std::vector<Finding> passedOver_; ///< what lies beside the poses in their folder
-    std::unique_ptr<Looker> looker_;  ///< last: it refers to the rest
+    bool isStale_ = false;                ///< what is looked at has changed meanwhile: another look follows
+    bool isFlatChosen_ = false;           ///< by the user; else it is the first pose
+    bool rest_ = false;                   ///< the poses that are missing follow by themselves
+    int benchTry_ = 0;                    ///< counts, so that a bench that comes too late is not taken
+    std::unique_ptr<FolderWatch> watch_;  ///< of a folder that was read
+    std::vector<std::string> incomplete_; ///< poses in it that are still being photographed
+    std::vector<Finding> passedOver_;     ///< what lies beside the poses in their folder
+    std::unique_ptr<Looker> looker_;      ///< last: it refers to the rest
 };
 
 } // namespace lumorph::studio

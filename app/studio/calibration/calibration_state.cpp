@@ -507,7 +507,9 @@ QString howWords(CalibrationStep::How how) {
     return tr("Not begun");
 }
 
-NextStep nextOf(const CalibrationState& state) {
+namespace {
+
+NextStep stepAfter(const CalibrationState& state) {
     const bool showsImport = state.isImported && state.result;
     if (state.setup.way == CaptureWay::crosshairs && !showsImport) return {};
     if (state.work != CalibrationState::Work::none) return workNext(state);
@@ -547,6 +549,14 @@ NextStep nextOf(const CalibrationState& state) {
             isOld(state) ? tr("A pose is not in the result yet") : tr("All poses are there"),
             {},
             tr("Work out camera and projector")};
+}
+
+} // namespace
+
+NextStep nextOf(const CalibrationState& state) {
+    NextStep next = stepAfter(state);
+    if (!state.arriving.isEmpty()) next.text += (next.text.isEmpty() ? QString() : " ") + state.arriving;
+    return next;
 }
 
 FindingWords wordsOfDoubt(const Finding& finding) {

@@ -76,6 +76,7 @@ struct CalibrationState {
     QString trouble;          ///< what failed apart from the capture: a camera that is gone, a folder that is empty
     std::string flatPose;     ///< name of the pose in which the board lay flat on the table
     bool isReadWhole = false; ///< all poses of the folder; else reading ended at a refusal, or was cancelled
+    QString arriving;         ///< what is not yet whole of what comes into the folder, in words; empty: nothing
     bool isImported = false;  ///< the result came from a file, without poses to look at
     std::filesystem::path savedIn;        ///< folder of the images of the poses; empty while there are none
     int unsaved = 0;                      ///< poses whose images are only in memory

@@ -386,7 +386,8 @@ void SetupForm::refresh() {
                              "the truth."
                        : byHand ? "You lay the projector\'s crosshair onto points of the device. Flaps stand raised, "
                                   "so that the points differ in height."
-                       : folder ? "One folder for each pose of the board, each with the photographs of all patterns."
+                       : folder ? "One folder for each pose of the board, each with the photographs of all patterns. "
+                                  "What comes later is read by itself."
                                 : "The patterns are shown in the projector's output window; the camera looks at them.");
     folder_->setVisible(folder);
     patterns_->setVisible(folder);
