@@ -19,6 +19,7 @@
 #include "calibration/verify/verify_lab.h"
 #include "tests/support/chain_judge.h"
 #include "tests/support/cut_tablet.h"
+#include "tests/support/long_tests.h"
 #include "tests/support/truth.h"
 #include "tests/ui/chain_hand.h"
 #include "tests/ui/file_dialog.h"
@@ -78,6 +79,8 @@ protected:
     }
     /// Projector and camera by their own sequence, from the chain and back.
     void measureProjector();
+    /// The rest, one after the other; STOP while the servos are measured.
+    void measureUntilStop();
 
     studio::ErrorPlan map; ///< that it shows
     TemporaryFolder folder;
@@ -149,6 +152,25 @@ void Chain::measureProjector() {
     ASSERT_TRUE(eventually([&] { return badge("projector") == "Simulated"; })) << story();
 }
 
+void Chain::measureUntilStop() {
+    SoundMixer& mixer = window.studio().sound.mixer();
+    mixer.setBoard(std::make_shared<const SoundBoard>(SoundBoard::synthesised()));
+    window.click("chain.rest");
+    EXPECT_TRUE(mixer.silent()) << "light moves nothing";
+    ASSERT_TRUE(eventually([&] { return badge("servos") == "Running"; }, 120s)) << story();
+    EXPECT_EQ(window.text("chain.warning"), "Hands off: the servos move");
+    EXPECT_FALSE(mixer.silent()) << "that is to be heard";
+    std::vector<std::int16_t> heard(2 * kSoundRate / 5);
+    mixer.mix(heard);
+    EXPECT_GT(std::ranges::max(heard), 5000);
+    window.screenshot("chain-servos");
+    // STOP ends it, and nothing of it is kept.
+    window.studio().loop.stop();
+    EXPECT_TRUE(eventually([&] { return badge("servos") == "Next"; }));
+    EXPECT_TRUE(room().servos.empty());
+    window.studio().loop.resume();
+}
+
 TEST_F(Chain, EachLinkIsMeasuredShownAndUsed) {
     ASSERT_TRUE(eventually([&] { return window.state().rig.rig && window.studio().jobs.running().empty(); }, 60s));
     window.screenshot("chain");
@@ -206,17 +228,21 @@ TEST_F(Chain, TwoProjectorsAndOneInAMirrorAreCalibratedByTheMouse) {
     EXPECT_TRUE(realParts(room()).empty()) << "nothing of it was measured";
 }
 
+TEST_F(Chain, TheRestIsMeasuredOneAfterTheOtherUntilStop) {
+    ASSERT_TRUE(eventually([&] { return window.state().rig.rig && window.studio().jobs.running().empty(); }, 60s));
+    studio::editInstallation(
+        window.studio().document, "A projector that the lab has measured", [](Installation& edited) {
+            InstalledProjector& projector = edited.projectors.front();
+            projector.lens = projector.pose = {Origin::Way::simulated, "virtual lab", "2026-11-20T10:00:00Z"};
+        });
+    ASSERT_NO_FATAL_FAILURE(measureUntilStop());
+    for (const char* link : {"pointer", "tracker", "device"}) EXPECT_EQ(badge(link), "Simulated") << link;
+}
+
 // R24, R25, R26: from nothing to a show that is right in the lab as it truly is, all of its errors on at once.
 TEST_F(Chain, AllThatIsMissingIsMeasuredOneAfterTheOther) {
+    if (!longTests()) GTEST_SKIP() << "minutes of photographs: LUMORPH_LONG_TESTS=1";
     ASSERT_TRUE(eventually([&] { return window.state().rig.rig && window.studio().jobs.running().empty(); }, 60s));
-    studio::editInstallation(window.studio().document, "A projector of fewer pixels", [](Installation& edited) {
-        InstalledProjector& projector = edited.projectors.front();
-        projector.lens = projector.pose = {Origin::Way::assumed, "of fewer pixels", ""}; // not entered by anybody
-        projector.camera =
-            withSize(projector.camera, {640, 400}); // the lab's camera follows: photographs take their time
-    });
-    SoundMixer& mixer = window.studio().sound.mixer();
-    mixer.setBoard(std::make_shared<const SoundBoard>(SoundBoard::synthesised()));
     for (const studio::ChainLink& link : studio::chainLinks()) {
         if (link.id == studio::LinkId::room) continue; // out of sight with one projector
         const QString how = badge(link.key);
@@ -224,20 +250,7 @@ TEST_F(Chain, AllThatIsMissingIsMeasuredOneAfterTheOther) {
             << link.key;
     }
     ASSERT_NO_FATAL_FAILURE(measureProjector());
-    window.click("chain.rest");
-    EXPECT_TRUE(mixer.silent()) << "light moves nothing";
-    ASSERT_TRUE(eventually([&] { return badge("servos") == "Running"; }, 120s)) << story();
-    EXPECT_EQ(window.text("chain.warning"), "Hands off: the servos move");
-    EXPECT_FALSE(mixer.silent()) << "that is to be heard";
-    std::vector<std::int16_t> heard(2 * kSoundRate / 5);
-    mixer.mix(heard);
-    EXPECT_GT(std::ranges::max(heard), 5000);
-    window.screenshot("chain-servos");
-    // STOP ends it, and nothing of it is kept.
-    window.studio().loop.stop();
-    EXPECT_TRUE(eventually([&] { return badge("servos") == "Next"; }));
-    EXPECT_TRUE(room().servos.empty());
-    window.studio().loop.resume();
+    ASSERT_NO_FATAL_FAILURE(measureUntilStop());
     window.click("chain.rest");
     ASSERT_TRUE(eventually([&] { return badge("check") == "Simulated"; }, 300s)) << story();
     for (const studio::ChainLink& link : studio::chainLinks()) {
