@@ -23,6 +23,7 @@ constexpr double kDimSwitched = 40.0;   // of the brightest tenth: below, noise 
 constexpr double kStrange = 0.08;       // of the light that is switched: above, a set makes no even light
 constexpr double kResolved = 0.25;      // of that light: what a stripe switches at least where it is resolved
 constexpr double kSameShot = 0.05;      // below, two shots show the same
+constexpr double kNotLate = 0.08;       // of the weights of a pair, beside their sum
 constexpr double kDriftTold = 0.03;     // of the exposure
 constexpr double kDriftRefused = 0.12;
 constexpr int kFullGrey = 254;
@@ -155,6 +156,7 @@ struct ShotCheck::Data {
     cv::Mat1b counts; ///< where exposure counts: the board, or all that is lit
     std::vector<cv::Point2f> corners;
     std::vector<cv::Point2d> onBoard;    ///< the board's points, in the picture; empty where none is looked for
+    double gainNow = 1.0;                ///< of the last pair, beside the first
     std::map<std::size_t, double> gains; ///< of the first set of so many images: a gamma makes phase sets darker
     bool isBurntTold = false, isDriftTold = false;
     std::optional<cv::Point2d> columnWay, rowWay; ///< in the camera, towards larger columns and rows
@@ -183,6 +185,7 @@ struct ShotCheck::Data {
     void lookAtSet(const std::vector<int>& set);
     void lookAtWay(const std::vector<int>& set);
     void explainStrange(const std::vector<int>& set, const cv::Mat1f& mean, double gain);
+    [[nodiscard]] bool isLightChanged(const std::vector<int>& pair);
     [[nodiscard]] cv::Mat1f onLit(const cv::Mat1f& values) const;
     [[nodiscard]] bool isEdgesAlone(const cv::Mat1f& off) const;
     [[nodiscard]] double explainedByEarlier(int image, double gain) const;
@@ -313,12 +316,32 @@ double ShotCheck::Data::explainedByEarlier(int image, double gain) const {
     return 1.0 - left.dot(left) / std::max(1.0, here.dot(here));
 }
 
+/// A pattern and its inverse that make even light again once each is made brighter or darker as a whole. So does a
+/// share of the first that is still seen in the second, but then the two weights have the sum that they should have.
+bool ShotCheck::Data::isLightChanged(const std::vector<int>& pair) {
+    const cv::Mat1f first = onLit(thinned(shot(pair[0]))), second = onLit(thinned(shot(pair[1])));
+    const cv::Mat1f wanted = onLit(2.0 * gainNow * even);
+    const cv::Matx22d products(first.dot(first), first.dot(second), first.dot(second), second.dot(second));
+    if (cv::determinant(products) < 1e-3 * products(0, 0) * products(1, 1)) return false; // the same picture twice
+    const cv::Vec2d weights = products.solve(cv::Vec2d(first.dot(wanted), second.dot(wanted)), cv::DECOMP_LU);
+    if (std::min(weights[0], weights[1]) < 0.1 || std::abs(weights[0] + weights[1] - 2.0) < kNotLate) return false;
+    const cv::Mat1f weighted = weights[0] * first + weights[1] * second;
+    if (differenceOf(0.5 * weighted, 0.5 * wanted) > 0.5 * kStrange) return false;
+    const double brighter = weights[0] / weights[1]; // the second, beside the first
+    refuse(Cause::exposureDrifts, file(pair[1]),
+           "is " + percentWords(std::abs(brighter - 1.0)) + (brighter > 1.0 ? " brighter" : " darker") +
+               " than the pattern before: the exposure or the light changes",
+           "switch automatic exposure and the screen's night light off, and capture this pose again");
+    return true;
+}
+
 void ShotCheck::Data::explainStrange(const std::vector<int>& set, const cv::Mat1f& mean, double gain) {
     for (const int image : set)
         if (image > 0 && differenceOf(thinned(shot(image)), thinned(shot(image - 1))) < kSameShot) {
             refuse(Cause::lateFrame, file(image), "shows the pattern before its own", kSettleLonger);
             return;
         }
+    if (set.size() == 2 && isLightChanged(set)) return;
     if (isEdgesAlone(onLit((mean - gain * even) / switched))) {
         refuseMoved(set);
         return;
@@ -398,6 +421,7 @@ void ShotCheck::Data::lookAtSet(const std::vector<int>& set) {
     }
     const double first = gains.try_emplace(set.size(), set.size() == 2 ? 1.0 : gain).first->second;
     const double drift = std::abs(gain / first - 1.0);
+    if (set.size() == 2) gainNow = gain;
     const std::string why = "is " + percentWords(drift) + (gain > first ? " brighter" : " darker") +
                             " than the first patterns: the exposure drifts";
     const char* const remedy = "switch the camera's automatic exposure off, and let projector and camera warm up";

@@ -315,6 +315,27 @@ TEST(PoseCapture, EachFaultIsToldByItsCauseAsItComes) {
              };
          },
          "exposure_drifts"},
+        {"light jumps",
+         [&](SlowCapture& slow) {
+             slow.lab.change = [first](int frame, const cv::Mat& seen) {
+                 return cv::Mat(seen * (frame < first + 20 ? 1.0 : 0.72));
+             };
+         },
+         "exposure_drifts"},
+        {"light jumps a shot later",
+         [&](SlowCapture& slow) {
+             slow.lab.change = [first](int frame, const cv::Mat& seen) {
+                 return cv::Mat(seen * (frame < first + 24 ? 1.0 : 0.8));
+             };
+         },
+         "exposure_drifts"},
+        {"exposure finds itself another value, step by step",
+         [&](SlowCapture& slow) {
+             slow.lab.change = [first](int frame, const cv::Mat& seen) {
+                 return cv::Mat(seen * (0.6 + 0.4 * std::pow(0.7, std::max(0, frame - first - 20))));
+             };
+         },
+         "exposure_drifts"},
         {"overexposed",
          [&](SlowCapture& slow) { slow.lab.change = [](int, const cv::Mat& seen) { return cv::Mat(seen * 3.0); }; },
          "clipped"},
