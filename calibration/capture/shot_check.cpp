@@ -446,7 +446,7 @@ ShotCheck::ShotCheck(const CaptureOrder& order, std::string name, std::optional<
     : data_(std::make_unique<Data>()) {
     data_->order = order;
     data_->name = std::move(name);
-    data_->board = board;
+    data_->board = std::move(board);
     data_->sets = evenSetsOf(order);
 }
 
