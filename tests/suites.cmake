@@ -1,7 +1,8 @@
 # Read by ctest whenever it starts: each suite of PROGRAM is one test, so that a start is paid once and what its tests
 # share is made once. Where a program crashes, the last "[ RUN ]" of its output names the test. Of the suites in APART,
 # whose tests take long and share nothing, each test is one for ctest; these begin first.
-# PROGRAM, PROCESSORS, COST and APART come from the file that includes this one (tests/CMakeLists.txt).
+# Those in TOGETHER, which share more, are one test.
+# PROGRAM, PROCESSORS, COST, APART and TOGETHER come from the file that includes this one (tests/CMakeLists.txt).
 cmake_minimum_required(VERSION 3.25)
 if(NOT EXISTS "${PROGRAM}")
     get_filename_component(name "${PROGRAM}" NAME)
@@ -14,11 +15,16 @@ if(NOT status EQUAL 0)
 endif()
 string(REGEX REPLACE "[ ]*#[^\n]*" "" listed "${listed}") # what a parameter is
 string(REPLACE "\n" ";" listed "${listed}")
+set(together "")
 foreach(line IN LISTS listed)
     if(line MATCHES "^([A-Za-z0-9_/]+)\\.$")
         set(suite "${CMAKE_MATCH_1}")
         get_filename_component(plain "${suite}" NAME) # without the prefix of its parameters
         if("${plain}" IN_LIST APART)
+            continue()
+        endif()
+        if("${suite}" IN_LIST TOGETHER)
+            list(APPEND together "${suite}.*")
             continue()
         endif()
         add_test("${suite}" "${PROGRAM}" "--gtest_filter=${suite}.*")
@@ -32,3 +38,10 @@ foreach(line IN LISTS listed)
         set_tests_properties("${test}" PROPERTIES TIMEOUT 600 PROCESSORS ${PROCESSORS} COST 500)
     endif()
 endforeach()
+if(together)
+    list(GET together 0 name)
+    string(REGEX REPLACE "\\..*$" "" name "${name}")
+    list(JOIN together ":" filter)
+    add_test("${name}" "${PROGRAM}" "--gtest_filter=${filter}")
+    set_tests_properties("${name}" PROPERTIES TIMEOUT 900 PROCESSORS ${PROCESSORS} COST 500)
+endif()

@@ -263,10 +263,12 @@ Told toldOf(const fs::path& folder, const CalibrationBoard& board, cv::Size proj
     return told;
 }
 
+/// `few`: of the faults that are seen in greys every third.
 void expectTold(const fs::path& original, const CalibrationBoard& board, cv::Size projector, cv::Size wrongSize,
-                bool greysAlone = false) {
+                bool few = false) {
+    int passed = 0;
     for (const Fault& fault : faultsOf(CaptureCopy(original), projector, wrongSize)) {
-        if (greysAlone && !isSeenInGreys(fault)) continue;
+        if (few && (!isSeenInGreys(fault) || passed++ % 3 != 0)) continue;
         const CaptureCopy copy(original);
         fault.inject(copy);
         const Told told = toldOf(copy.path(), board, fault.projector.empty() ? projector : fault.projector);

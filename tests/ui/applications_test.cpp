@@ -118,7 +118,7 @@ TEST_F(ApplicationsWindow, StartByOneClickOnACardAndExplainThemselves) {
     window.screenshot("applications-german");
     window.click("applications.labyrinth");
 
-    ASSERT_TRUE(eventually([&] { return shows("labyrinth"); }, 30s));
+    ASSERT_TRUE(eventually([&] { return shows("labyrinth"); }));
     EXPECT_TRUE(eventually([&] { return window.window().isFullScreen(); }));
     EXPECT_EQ(window.findNow<QWidget>("applications"), nullptr);
     EXPECT_FALSE(outliner->isVisible());
@@ -146,7 +146,7 @@ TEST_F(ApplicationsWindow, StartByOneClickOnACardAndExplainThemselves) {
     ASSERT_NE(window.find<QWidget>("applications"), nullptr) << "Esc leads back to the cards";
     EXPECT_FALSE(studio().loop.stopped());
     window.click("applications.techniques");
-    ASSERT_TRUE(eventually([&] { return shows("techniques"); }, 30s));
+    ASSERT_TRUE(eventually([&] { return shows("techniques"); }));
     QTest::keyClick(&eye(), Qt::Key_4);
     EXPECT_TRUE(eventually([&] { return layer().captionTitle() == "4  Kanten"; }));
     EXPECT_FALSE(layer().captionSentence().isEmpty());
@@ -178,23 +178,23 @@ TEST_F(ApplicationsWindow, AKeyTakesTheLightAwayAndTheBareDeviceIsSeenBesideIt) 
     studio().settings.setBareInlay({});
     window.command("Applications");
     window.click("applications.labyrinth");
-    ASSERT_TRUE(eventually([&] { return shows("labyrinth"); }, 30s));
+    ASSERT_TRUE(eventually([&] { return shows("labyrinth"); }));
     auto* inlay = window.find<ViewPane>("scene.inlay");
     ASSERT_NE(inlay, nullptr);
-    EXPECT_TRUE(eventually([&] { return !inlay->picture().isNull(); }, 30s));
+    EXPECT_TRUE(eventually([&] { return !inlay->picture().isNull(); }));
     EXPECT_NEAR(inlay->width(), 0.26 * eye().width(), 2.0);
     EXPECT_GT(inlay->x(), eye().width() / 2);
     picture("labyrinth-inlay");
     const QImage felt = inlay->grab().toImage();
     QTest::keyClick(&eye(), Qt::Key_N);
     QTest::keyClick(&eye(), Qt::Key_N);
-    EXPECT_TRUE(eventually([&] { return differing(felt, inlay->grab().toImage()) > 0.01; }, 20s))
+    EXPECT_TRUE(eventually([&] { return differing(felt, inlay->grab().toImage()) > 0.01; }))
         << "one sees that it takes the third level's shape";
 
     const QImage lit = eye().grab().toImage();
     QTest::keyClick(&eye(), Qt::Key_L);
     ASSERT_TRUE(eventually([&] { return eye().light() == 0.0; }, 10s));
-    EXPECT_TRUE(eventually([&] { return differing(lit, eye().grab().toImage()) > 0.2; }, 20s));
+    EXPECT_TRUE(eventually([&] { return differing(lit, eye().grab().toImage()) > 0.2; }));
     picture("labyrinth-bare");
     QTest::keyClick(&eye(), Qt::Key_L);
     ASSERT_TRUE(eventually([&] { return eye().light() == 1.0; }, 10s));
@@ -216,7 +216,7 @@ TEST_F(ApplicationsWindow, AKeyTakesTheLightAwayAndTheBareDeviceIsSeenBesideIt) 
 TEST_F(ApplicationsWindow, EscEscStopsWhereItAlsoLeadsToTheCards) {
     window.command("Applications");
     window.click("applications.labyrinth");
-    ASSERT_TRUE(eventually([&] { return shows("labyrinth"); }, 30s));
+    ASSERT_TRUE(eventually([&] { return shows("labyrinth"); }));
     QTest::keyClick(&eye(), Qt::Key_Escape);
     QTest::keyClick(&eye(), Qt::Key_Escape);
     EXPECT_TRUE(eventually([&] { return studio().loop.stopped(); }));
@@ -226,7 +226,7 @@ TEST_F(ApplicationsWindow, EscEscStopsWhereItAlsoLeadsToTheCards) {
 TEST_F(ApplicationsWindow, InTheKioskVisitorsChooseAndPlayAndTheNextComesWhenTheyHaveGone) {
     studio().settings.setNextMinutes(true, 0.0);
     studio().project.openDemo("labyrinth");
-    ASSERT_TRUE(eventually([&] { return shows("labyrinth"); }, 30s));
+    ASSERT_TRUE(eventually([&] { return shows("labyrinth"); }));
     enterKiosk();
     EXPECT_TRUE(layer().handShown());
     QTest::mouseClick(&eye(), Qt::LeftButton, {}, QPoint(eye().width() - 40, eye().height() / 2));
@@ -246,7 +246,7 @@ TEST_F(ApplicationsWindow, InTheKioskVisitorsChooseAndPlayAndTheNextComesWhenThe
     EXPECT_EQ(window.findNow<QWidget>("applications.tour"), nullptr) << "that is the host's";
     window.screenshot("kiosk-applications");
     window.click("applications.techniques");
-    ASSERT_TRUE(eventually([&] { return shows("techniques"); }, 30s));
+    ASSERT_TRUE(eventually([&] { return shows("techniques"); }));
     EXPECT_TRUE(window.window().isFullScreen());
     picture("kiosk-techniques");
 
@@ -259,7 +259,7 @@ TEST_F(ApplicationsWindow, InTheKioskVisitorsChooseAndPlayAndTheNextComesWhenThe
     QTest::keyClick(&eye(), Qt::Key_A);
     const SteadyClock clock;
     const std::string next = studio::ApplicationTurn(demos(), {}, clock).after("techniques")->name;
-    EXPECT_TRUE(eventually([&] { return shows(next); }, 30s)) << "nobody came";
+    EXPECT_TRUE(eventually([&] { return shows(next); })) << "nobody came";
 }
 
 TEST_F(ApplicationsWindow, WhoseMapHasGoneAreLeftOutOfTheKiosksTurnUntilItIsBack) {
@@ -267,7 +267,7 @@ TEST_F(ApplicationsWindow, WhoseMapHasGoneAreLeftOutOfTheKiosksTurnUntilItIsBack
     const std::filesystem::path map = folder / "valley.geojson", missing = folder / "missing.geojson";
     studio().settings.setToldTo("navigation", {{"map", missing.string()}});
     studio().project.openDemo("labyrinth");
-    ASSERT_TRUE(eventually([&] { return shows("labyrinth"); }, 30s));
+    ASSERT_TRUE(eventually([&] { return shows("labyrinth"); }));
     enterKiosk();
     studio().settings.setNextMinutes(true, 0.005); // 0.3 s
     EXPECT_TRUE(eventually([&] { return shows("ambient"); }, 60s)) << "past navigation";
@@ -301,7 +301,7 @@ TEST_F(ApplicationsWindow, OfWhichNoneCanBeShownLeaveAQuietPageInTheKiosk) {
     studio().project.openDemo("labyrinth", [&breaks](std::uint64_t) -> std::unique_ptr<ShowProgram> {
         return std::make_unique<Breakable>(breaks);
     });
-    ASSERT_TRUE(eventually([&] { return studio().loop.program() != nullptr; }, 30s));
+    ASSERT_TRUE(eventually([&] { return studio().loop.program() != nullptr; }));
     // All others have something to open that is not there.
     int opened = 0, failures = 0;
     QObject::connect(&studio().project, &studio::ProjectService::programOpened, &window.window(), [&] { ++opened; });
@@ -323,7 +323,7 @@ TEST_F(ApplicationsWindow, OfWhichNoneCanBeShownLeaveAQuietPageInTheKiosk) {
 TEST_F(ApplicationsWindow, CompareTheBendInTwoHalvesInTheVisitorsLanguage) {
     window.command("Applications");
     window.click("applications.navigation");
-    EXPECT_TRUE(eventually([&] { return layer().openingShown() && layer().isVisible(); }, 30s))
+    EXPECT_TRUE(eventually([&] { return layer().openingShown() && layer().isVisible(); }))
         << "a map takes its time, and what showed before is veiled";
     window.screenshot("navigation-opening", 0ms);
     ASSERT_TRUE(eventually([&] { return shows("navigation"); }, 60s));
@@ -351,7 +351,7 @@ TEST_F(ApplicationsWindow, AreToldByTheHostWhatToShow) {
     window.enter("options.place", "north of here", Qt::Key_Tab);
     window.screenshot("application-options");
     window.click("options.start");
-    ASSERT_TRUE(eventually([&] { return !studio().notices.at("project").empty(); }, 30s));
+    ASSERT_TRUE(eventually([&] { return !studio().notices.at("project").empty(); }));
     EXPECT_TRUE(studio().notices.at("project").front().subject.contains("north of here"));
     EXPECT_TRUE(eventually([&] { return !window.window().isFullScreen(); })) << "where it can be read";
     EXPECT_TRUE(eventually([&] { return window.find<QWidget>("notices.project")->findChild<QLabel*>() != nullptr; }));
@@ -364,7 +364,7 @@ TEST_F(ApplicationsWindow, AreToldByTheHostWhatToShow) {
     EXPECT_TRUE(window.find<QLineEdit>("options.place")->text().isEmpty());
     window.enter("options.place", "-33.9,18.4,2", Qt::Key_Tab);
     window.click("options.start");
-    ASSERT_TRUE(eventually([&] { return shows("ambient"); }, 30s));
+    ASSERT_TRUE(eventually([&] { return shows("ambient"); }));
     EXPECT_EQ(studio().settings.toldTo("ambient"), (DemoTold{{"place", "-33.9,18.4,2"}}));
     picture("ambient-told");
     studio().settings.setToldTo("ambient", {});

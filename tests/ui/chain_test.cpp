@@ -212,6 +212,7 @@ TEST_F(Chain, TwoProjectorsAndOneInAMirrorAreCalibratedByTheMouse) {
     };
     EXPECT_GT(lightBeside(0), 5.0) << "what is believed is far from it";
     for (const char* link : {"room", "mirror"}) {
+        if (link == std::string_view("mirror") && !longTests()) continue;
         window.click(QString("chain.link.") + link);
         ASSERT_TRUE(offers("Measure in the lab")) << story();
         next();

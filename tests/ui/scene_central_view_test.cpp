@@ -186,7 +186,7 @@ TEST_F(SceneCentralViewTest, TheCardSaysWhereTheTimeGoesAndPosesArePredictedByIt
         (void)head->push({SteadyClock().now() - 4ms, true, {{0.0, 0.45, 0.55}, {1, 0, 0, 0}}});
     });
     tracker.start(8ms);
-    ASSERT_TRUE(eventually([&] { return show.count() > from + 12; }, 20s));
+    ASSERT_TRUE(eventually([&] { return show.count() > from + 12; }));
     EXPECT_TRUE(window.find<studio::LatencyCard>("scene.latency")->isVisible());
     window.screenshot("stage-latency");
     double stages = 0.0;

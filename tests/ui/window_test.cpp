@@ -119,7 +119,8 @@ TEST_F(Window, FirstHour) {
         window.command("build the field");
         window.enter("field.build.resolution", "48", Qt::Key_Tab);
         window.click("field.build.accept");
-        ASSERT_TRUE(eventually([&] { return window.state().field.field != coarse; })) << "the field was not built";
+        ASSERT_TRUE(eventually([&] { return window.state().field.field != coarse; }, 240s))
+            << "the field was not built";
         const auto finer = window.state().field.field;
         EXPECT_EQ(finer->field.frame.dimensions.y, 48);
         ASSERT_TRUE(window.settles());
