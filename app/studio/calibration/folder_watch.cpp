@@ -61,7 +61,7 @@ struct FolderWatch::Shared {
     std::condition_variable ended;
     // Guarded by the mutex.
     bool isWanted = true;
-    std::optional<Contents> known; ///< what was told
+    std::optional<Contents> known; ///< at the last accepted call of `told`
 
     static void look(const std::shared_ptr<Shared>& shared);
     /// In the window's thread.

@@ -10,8 +10,8 @@
 
 namespace lumorph::studio {
 
-/// Looks again and again at the folders in a folder into which somebody photographs or copies: also where a network
-/// tells nobody of new files. A thread of its own looks, so that a slow disk holds up nothing.
+/// Polls the subfolders of a folder for files that are added or changed. It polls because network drives send no change
+/// notifications. A background thread does it, so that a slow disk does not block the window.
 class FolderWatch {
 public:
     struct Content {
@@ -20,20 +20,20 @@ public:
         bool operator==(const Content&) const = default;
     };
     using Contents = std::map<std::string, Content>; ///< by the folder's name
-    /// What is another since it was told last and was the same in two looks; in the window's thread. False: it is told
-    /// again.
+    /// Called in the window's thread with the subfolders that have changed since the last accepted call and were the
+    /// same in two polls in a row. Returns false to be called again after the next poll.
     using Told = std::function<bool(const Contents& changed)>;
 
     FolderWatch(std::filesystem::path folder, Told told,
                 std::chrono::milliseconds every = std::chrono::milliseconds(1500));
-    /// In the window's thread: nothing is told any more.
+    /// Call it in the window's thread; `told` is not called afterwards.
     ~FolderWatch();
     FolderWatch(const FolderWatch&) = delete;
     FolderWatch& operator=(const FolderWatch&) = delete;
 
 private:
     struct Shared;
-    std::shared_ptr<Shared> shared_; ///< with the thread, which may still look when nobody wants it any more
+    std::shared_ptr<Shared> shared_; ///< shared with the detached thread, which may outlive this
 };
 
 } // namespace lumorph::studio
