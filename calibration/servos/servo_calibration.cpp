@@ -48,16 +48,28 @@ void requireSeen(const Estimates& estimates) {
     if (!estimates.front() || 2 * static_cast<std::size_t>(seen) <= estimates.size()) refuseUnseen();
 }
 
-void requireStill(const Estimates& estimates) {
+/// How many passes found the device elsewhere on the table than the first did.
+std::size_t elsewhere(const Estimates& estimates) {
     const DeviceNudge& first = estimates.front()->place;
-    int moved = 0;
-    for (const auto& one : estimates) {
-        if (!one) continue;
+    const auto moved = std::ranges::count_if(estimates, [&](const auto& one) {
+        if (!one) return false;
         const double shift = glm::length(one->place.shift - first.shift);
-        const double turn = 0.1 * glm::length(one->place.turn - first.turn);
-        moved += shift + turn > kBumped ? 1 : 0;
-    }
-    if (moved * 5 < static_cast<int>(estimates.size())) return;
+        return shift + 0.1 * glm::length(one->place.turn - first.turn) > kBumped;
+    });
+    return static_cast<std::size_t>(moved);
+}
+
+/// While each servo moves alone, before the long stepping. A flat device does not tell where along the table it lies:
+/// one that is believed to lie elsewhere seems to slide away as its parts rise.
+void requireBelievedPlace(const Estimates& estimates) {
+    if (2 * elsewhere(estimates) < estimates.size()) return;
+    throw CaptureRefused({Cause::modelDoesNotFit, "servos", "",
+                          "the device is found where the room has it only while its servos are at rest",
+                          "let the tracker see it, its corners touched before, or enter in Scene where it lies"});
+}
+
+void requireStill(const Estimates& estimates) {
+    if (5 * elsewhere(estimates) < estimates.size()) return;
     throw CaptureRefused({Cause::rigMoved, "servos", "", "the device moved on the table while it was measured",
                           "fix it, keep your hands off, and measure again"});
 }
@@ -210,6 +222,7 @@ void ServoSolver::take(const ServoPass& pass) {
         d.place.shiftSigma = kKnownShift;
     }
     if (d.estimates.size() != wiringSteps(d.plan)) return;
+    requireBelievedPlace(d.estimates);
     d.movers = moversOf(d.plan, d.estimates, d.rig.actuatorCount());
     d.isWiringClear = servos::judgeWiring(d.rig, d.movers, *d.estimates.front(), d.wiring);
 }

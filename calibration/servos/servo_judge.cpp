@@ -61,10 +61,16 @@ Ladder ladderOf(const BothWays& seen) {
     return ladder;
 }
 
-/// How a curve may turn from one level to the next, and how play may change, strokes.
+/// How a curve may turn from one level to the next, and how play may change, strokes: where a step is a sixteenth of
+/// the range. Over longer steps a curve turns more, by their square, and play changes more.
 struct Stiffness {
     double bend = 0.006;
     double play = 0.001;
+
+    [[nodiscard]] Stiffness over(double step) const {
+        const double longer = 16.0 * step;
+        return {bend * longer * longer, play * longer};
+    }
 };
 /// A stop is a corner that is meant, and against it both ways meet.
 constexpr Stiffness kWithStop{0.05, 0.05};
@@ -128,7 +134,8 @@ void drawCurve(const BothWays& seen, ServoFinding& servo) {
     if (sure(seen.up).size() < 3 || sure(seen.down).size() < 3) return;
     Ladder ladder = ladderOf(seen);
     measurePlay(ladder, servo);
-    smooth(ladder, servo.stopsAt ? kWithStop : Stiffness{});
+    const double step = 1.0 / static_cast<double>(ladder.commanded.size() - 1);
+    smooth(ladder, servo.stopsAt ? kWithStop : Stiffness{}.over(step));
     std::vector<double> sigmas;
     for (const LevelSeen& level : seen.up) sigmas.push_back(level.sigma);
     std::ranges::nth_element(sigmas, sigmas.begin() + static_cast<std::ptrdiff_t>(sigmas.size() / 2));

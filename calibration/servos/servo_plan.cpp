@@ -106,7 +106,8 @@ ServoPlan planServos(const Rig& rig, std::vector<std::vector<std::size_t>> group
         plan.steps.push_back({ServoStep::Kind::find, {i}, one});
     }
     for (const auto& group : groups)
-        for (int k = 0; k <= 2 * options.steps; ++k) {
+        // The group before has ended at rest, and a servo that moved alone has not.
+        for (int k = &group == &groups.front() ? 0 : 1; k <= 2 * options.steps; ++k) {
             const int level = std::min(k, 2 * options.steps - k);
             std::vector<double> commanded = rest;
             for (const std::size_t i : group) commanded[i] = static_cast<double>(level) / options.steps;

@@ -12,9 +12,9 @@ namespace lumorph {
 
 namespace {
 
-/// Where photographs of a state take seconds. Between nine levels the curve of a lever or a servo is straight to a
-/// tenth of a degree.
-constexpr int kPhotographedSteps = 8;
+/// Where photographs of a state take seconds. Between seven levels the curve of a lever or a servo is straight to a
+/// quarter of a degree.
+constexpr int kPhotographedSteps = 6;
 
 MeasuredStage measureServos(const StageSite& site, Bench& bench, const Progress& progress) {
     StageRecording recording = stages::emptyRecording("servos", site, bench);

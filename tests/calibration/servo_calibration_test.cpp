@@ -175,8 +175,7 @@ TEST(ServoCalibrationTest, RefusesWhatIsNoMeasurement) {
 }
 
 /// What camera and projector see of the device in each step of a plan.
-std::vector<ServoPass> passesOf(const ServoPlan& plan) {
-    const Installation room = defaultInstallation();
+std::vector<ServoPass> passesOf(const ServoPlan& plan, const Installation& room = defaultInstallation()) {
     ServoLabOptions options;
     options.pixelStep = 12;
     ServoLab lab(servoTablet(), room, 4, options);
@@ -203,6 +202,57 @@ TEST(ServoCalibrationTest, AHiddenServoIsNotCalledDead) {
     ASSERT_EQ(measured.findings.size(), 1U);
     EXPECT_EQ(keyOf(measured.findings.front().cause), keyOf(Cause::tooFewPoints));
     EXPECT_EQ(measured.findings.front().view, servoTablet().actuators()[2].name);
+}
+
+/// What a solver refuses passes for, and how many it took before it did.
+std::pair<std::string, std::size_t> refusalOf(const ServoPlan& plan, const std::vector<ServoPass>& passes) {
+    ServoSolver solver(servoTablet(), glm::dmat4(1.0), plan);
+    std::size_t taken = 0;
+    try {
+        for (; !solver.ended(); ++taken) solver.take(passes[taken]);
+        static_cast<void>(solver.result());
+    } catch (const CaptureRefused& refused) {
+        return {std::string(keyOf(refused.finding().cause)), taken};
+    }
+    return {"", taken};
+}
+
+TEST(ServoCalibrationTest, ADeviceThatLiesElsewhereIsToldFromOneThatWasPushed) {
+    const ServoPlan plan = planServos(servoTablet(), {{0, 1, 2, 3}, {4, 5}}, {.steps = 4, .fresh = 1});
+    const auto shifted = [](glm::vec3 by) {
+        Installation room = defaultInstallation();
+        room.worldFromDevice[3] = glm::vec4(by, 1.0F);
+        return room;
+    };
+    const std::vector<ServoPass> passes = passesOf(plan);
+    EXPECT_EQ(refusalOf(plan, passes).first, "");
+    const std::vector<ServoPass> aside = passesOf(plan, shifted({0.03F, 0.0F, 0.0F}));
+    const auto [cause, taken] = refusalOf(plan, aside);
+    EXPECT_EQ(cause, keyOf(Cause::modelDoesNotFit));
+    EXPECT_EQ(taken, 6U) << "known once each servo has moved alone, not after all levels";
+    std::vector<ServoPass> pushed = passes;
+    const std::vector<ServoPass> later = passesOf(plan, shifted({0.006F, 0.0F, 0.006F}));
+    std::copy(later.begin() + 9, later.end(), pushed.begin() + 9);
+    EXPECT_EQ(refusalOf(plan, pushed).first, keyOf(Cause::rigMoved));
+}
+
+TEST(ServoCalibrationTest, CurvesOfFewLevelsBendAsServosDo) {
+    const Installation truth = trueRoom(defaultInstallation(), servoTablet().actuators(), 8);
+    const ServoPlan plan = planServos(servoTablet(), {{0, 1, 2, 3}, {4, 5}}, {.steps = 4, .fresh = 1});
+    Installation placed = defaultInstallation();
+    placed.servos = truth.servos;
+    const ServoCalibration measured = solveServos(servoTablet(), glm::dmat4(1.0), plan, passesOf(plan, placed));
+    ASSERT_TRUE(measured.usable);
+    double sum = 0.0;
+    for (std::size_t i = 0; i < measured.servos.size(); ++i)
+        for (const double commanded : {0.25, 0.5, 0.75}) {
+            const ServoFinding& servo = measured.servos[i];
+            sum += servo.degrees *
+                   std::abs(realStroke(servo.curve, commanded, 0.0) - trueAt(truth.servos[i], commanded, true));
+        }
+    const double mean = sum / static_cast<double>(3 * measured.servos.size());
+    std::printf("at levels a quarter of the range apart curves are %.3f degrees off in the mean\n", mean);
+    EXPECT_LT(mean, 0.25);
 }
 
 TEST(ServoCalibrationTest, WithoutTheDeviceAtRestThereIsNoResultLater) {

@@ -12,7 +12,9 @@
 #include "calibration/lab/lab_capture.h"
 #include "calibration/lab/true_room.h"
 #include "calibration/light/light_lab.h"
+#include "calibration/servos/servo_calibration.h"
 #include "calibration/stages/lab_bench.h"
+#include "core/scene/measured_servos.h"
 #include "devices/controllers/device_profile.h"
 #include "tests/support/chain_judge.h"
 #include "tests/support/light_errors.h"
@@ -339,6 +341,17 @@ void judgeProjector(const Installation& room, const Installation& truth) {
     EXPECT_LE(degrees, 0.05);
 }
 
+/// Degrees between a measured curve and the true one, both ways.
+double worstCurve(const Installation& room, const Installation& truth) {
+    double worst = 0.0;
+    for (std::size_t i = 0; i < room.servos.size() && i < truth.servos.size(); ++i)
+        for (int k = 0; k <= 96; ++k)
+            for (const double from : {0.0, 1.0})
+                worst = std::max(worst, std::abs(realStroke(room.servos[i], k / 96.0, from) -
+                                                 realStroke(truth.servos[i], k / 96.0, from)));
+    return room.servos.size() == truth.servos.size() ? kDegreesOfUnturned * worst : kDegreesOfUnturned;
+}
+
 TEST_F(WholeChainAtTheTable, Part1ProjectorAndLight) {
     chain.open();
     window.click("chain.link.pointer");
@@ -376,6 +389,9 @@ TEST_F(WholeChainAtTheTable, Part3Servos) {
     connectTracker();
     ASSERT_NO_FATAL_FAILURE(measureMoving("servos"));
     useAsMeasured("servos");
+    const double worst = worstCurve(chain.room(), table.truth);
+    std::printf("servos | curves worst %.2f degrees\n", worst);
+    EXPECT_LE(worst, 1.0);
     keepAs("servos");
 }
 
