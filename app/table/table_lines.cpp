@@ -4,6 +4,7 @@
 #include <charconv>
 #include <chrono>
 #include <cmath>
+#include <cstdlib>
 #include <memory>
 #include <optional>
 #include <sstream>
@@ -28,10 +29,21 @@ constexpr double kLargestDot = 0.01; // of a projector's picture
 constexpr double kJump = 0.02;       // metres
 constexpr Microseconds kRests{400'000}, kMostRestless{8'000'000}, kMostLate{2'000'000};
 constexpr std::chrono::milliseconds kLook{2};
-constexpr double kAim = 0.35; // of the way from a dot to the eye
+constexpr int kVisible = 4, kRounded = 100; // of 255; so many may differ by more, and it is the same picture
+constexpr double kAim = 0.35;               // of the way from a dot to the eye
 
 /// Holes that are drilled in a corner of the table.
 glm::dvec3 dimple(int number) { return {-0.3 + 0.06 * number, 0.0, 0.3}; }
+
+/// More than a rounding of a few pixels.
+bool looksOtherwise(const Image& a, const Image& b) {
+    if (a.size() != b.size()) return true;
+    int others = 0;
+    for (std::size_t i = 0; i < a.pixels().size() && others <= kRounded; ++i)
+        for (std::size_t channel = 0; channel < 3; ++channel)
+            others += std::abs(a.pixels()[i][channel] - b.pixels()[i][channel]) > kVisible ? 1 : 0;
+    return others > kRounded;
+}
 
 } // namespace
 
@@ -157,7 +169,13 @@ std::string TableLines::latency(const Words& words) {
             if (clock.now() - begun > most) return false;
         return true;
     };
-    const auto changed = [&] { return parts_.eye.at(0, clock.now()).since; };
+    ScreenEye::Shown last = parts_.eye.at(0, clock.now());
+    /// Since when it looks as it does; a pixel here and there that is rounded otherwise is no other picture.
+    const auto changed = [&] {
+        const ScreenEye::Shown now = parts_.eye.at(0, clock.now());
+        if (now.picture != last.picture && looksOtherwise(*now.picture, *last.picture)) last = now;
+        return last.since;
+    };
     parts_.tracker.setTrembles(false); // its noise would move the picture all the time
     const std::shared_ptr<void> trembles(nullptr, [this](void*) { parts_.tracker.setTrembles(true); });
     const Pose lies = parts_.table.at(clock.now()).device;
