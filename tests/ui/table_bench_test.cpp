@@ -1,6 +1,9 @@
 #include <atomic>
+#include <cmath>
 #include <mutex>
 #include <optional>
+#include <random>
+#include <stop_token>
 #include <thread>
 
 #include "app/studio/calibration/table_bench.h"
@@ -211,6 +214,36 @@ TEST_F(TableBenchTest, StopEndsItWithWhatToDo) {
     EXPECT_FALSE(found);
     EXPECT_NE(trouble.find("not driven any more"), std::string::npos) << trouble;
     EXPECT_TRUE(allLimp());
+}
+
+/// A device that is put down, in a tracker's own frame: it slides for the first second, and trembles by 0.2 mm.
+TEST(RestingDevice, IsWhereItLiesOnceItLies) {
+    PoseBoard board;
+    const auto stream = board.stream("tablet", PoseRole::device);
+    Installation room = defaultInstallation();
+    room.worldFromTracker[3] = glm::vec4(0.0F, 0.5F, 0.0F, 1.0F);
+    room.bodyFromDevice[3] = glm::vec4(0.0F, -0.02F, 0.0F, 1.0F);
+    EXPECT_THROW(static_cast<void>(studio::withRestingDevice(room, PoseBoard{}, {})), DeviceError);
+    std::atomic<bool> ends = false;
+    std::thread tracker([&] {
+        std::mt19937 dice(12);
+        std::normal_distribution<double> tremble(0.0, 2e-4);
+        const glm::dquat turn = glm::angleAxis(0.4, glm::dvec3(0.0, 1.0, 0.0));
+        for (int k = 0; !ends; ++k) {
+            const glm::dvec3 place(0.1 - 0.002 * std::min(k, 50), -0.48, 0.03);
+            const glm::dvec3 off(tremble(dice), tremble(dice), tremble(dice));
+            stream->push({Microseconds{20'000 * (k + 1)}, true, {place + off, turn}});
+            std::this_thread::sleep_for(20ms);
+        }
+    });
+    const Installation found = studio::withRestingDevice(room, board, {});
+    std::stop_source stop;
+    stop.request_stop();
+    EXPECT_THROW(static_cast<void>(studio::withRestingDevice(room, board, Progress({}, stop.get_token()))), Cancelled);
+    ends = true;
+    tracker.join();
+    EXPECT_LT(glm::distance(glm::vec3(found.worldFromDevice[3]), glm::vec3(0.0F, 0.0F, 0.03F)), 5e-4F);
+    EXPECT_NEAR(std::atan2(-found.worldFromDevice[0].z, found.worldFromDevice[0].x), 0.4, 1e-4);
 }
 
 TEST_F(TableBenchTest, WhatIsMissingIsToldInTheChain) {

@@ -5,6 +5,7 @@
 #include <QObject>
 
 #include "app/studio/calibration/chain_live.h"
+#include "app/studio/calibration/table_bench.h"
 #include "calibration/stages/lab_bench.h"
 #include "core/base/error.h"
 
@@ -306,24 +307,25 @@ void ChainService::beginLive(std::size_t link) {
     }
 }
 
-/// The room with the device where it is tracked, once both that and its body are known in it.
-Installation ChainService::roomAsTracked() const {
-    Installation room = *document_.state().installation;
-    const bool isKnown = room.origins.tracker.isCalibrated() && room.origins.deviceBody.isCalibrated();
+/// By which the device is found, once both tracker and its body are known in the room; else null.
+std::shared_ptr<const PoseBoard> ChainService::devicePoses() const {
+    const auto& origins = document_.state().installation->origins;
     const auto& frame = loop_.frame();
-    if (isKnown && frame && live_.obstacle({PoseRole::device}).isEmpty()) room.worldFromDevice = frame->worldFromDevice;
-    return room;
+    const bool isKnown = origins.tracker.isCalibrated() && origins.deviceBody.isCalibrated();
+    return isKnown && frame && live_.obstacle({PoseRole::device}).isEmpty() ? frame->poses : nullptr;
 }
 
 void ChainService::beginOnTable(std::size_t link) {
     const std::shared_ptr<const Rig>& rig = document_.state().rig.rig;
-    const Installation room = roomAsTracked();
+    const Installation& room = *document_.state().installation;
     state_.session.forget(link);
     try {
         if (!rig) throw InvalidInput("the device", "there is none", "open a rig");
-        run(link, [stage = chainLinks()[link].stage, site = StageSite{rig, room},
+        run(link, [stage = chainLinks()[link].stage, site = StageSite{rig, room}, poses = devicePoses(),
                    bench = table_(room, chainLinks()[link].isMoved)](const Progress& progress) {
-            return outcomeOf(measureStage(*stage, site, *bench, progress), site.room);
+            if (!poses) return outcomeOf(measureStage(*stage, site, *bench, progress), site.room);
+            const StageSite found{site.rig, withRestingDevice(site.room, *poses, progress)};
+            return outcomeOf(measureStage(*stage, found, *bench, progress), found.room);
         });
     } catch (const std::exception& error) {
         fail(link, error);

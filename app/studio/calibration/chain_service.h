@@ -89,7 +89,7 @@ signals:
 private:
     void begin(std::size_t link);
     void beginLive(std::size_t link);
-    [[nodiscard]] Installation roomAsTracked() const;
+    [[nodiscard]] std::shared_ptr<const PoseBoard> devicePoses() const;
     void beginOnTable(std::size_t link);
     void run(std::size_t link, std::function<StageOutcome(const Progress&)> work);
     void fail(std::size_t link, const std::exception& error);

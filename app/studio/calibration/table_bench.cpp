@@ -1,9 +1,12 @@
 #include "app/studio/calibration/table_bench.h"
 
+#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <map>
+#include <numbers>
 #include <optional>
+#include <span>
 #include <thread>
 #include <utility>
 
@@ -18,6 +21,7 @@
 #include "calibration/light/camera_light.h"
 #include "calibration/servos/servo_measurement.h"
 #include "core/base/error.h"
+#include "core/loop/tracked_room.h"
 
 namespace lumorph::studio {
 namespace {
@@ -27,6 +31,9 @@ constexpr int kTries = 3;                                // at a photograph that
 constexpr auto kCalms = std::chrono::milliseconds(700);  // before the next
 constexpr auto kStands = std::chrono::milliseconds(400); // after the last command nothing trembles any more
 constexpr auto kPause = std::chrono::milliseconds(20);
+constexpr Microseconds kLies{600'000}, kMostRestless{10'000'000};
+constexpr std::size_t kFewestPoses = 8; // in that time
+constexpr double kStillWithin = 5e-4;   // metres between the means of its halves, and as many radians a tenth of one
 
 /// Runs `work` in the window's thread some time soon; never waits for it, as the window may wait for a measurement.
 template <class Work> void inWindow(Work work) {
@@ -72,6 +79,13 @@ bool isPassing(Cause cause) {
            cause == Cause::handInView || cause == Cause::wrongOrder; // as a person in the light is called
 }
 
+void waitFor(std::chrono::milliseconds calm, const Progress& progress) {
+    for (auto waited = std::chrono::milliseconds{0}; waited < calm; waited += kPause) {
+        progress.throwIfCancelled();
+        std::this_thread::sleep_for(kPause);
+    }
+}
+
 /// Deleted in the window's thread, whoever lets go of it last.
 template <class Owned> std::shared_ptr<Owned> ownedByWindow(std::unique_ptr<Owned> owned) {
     return std::shared_ptr<Owned>(owned.release(), [](Owned* last) { inWindow([last] { delete last; }); });
@@ -102,7 +116,9 @@ public:
     void findExposureBy(PatternDisplay& display, const Progress& progress) {
         if (std::exchange(isExposed_, true)) return;
         display.show(cv::Mat(display.size(), CV_8U, cv::Scalar(255)), progress);
-        (void)findExposure(camera(), progress);
+        CaptureCamera& eye = camera();
+        waitFor(kCalms, progress); // how late a picture is, nobody has measured yet
+        (void)findExposure(eye, progress);
     }
 
     void stand(std::span<const double> commanded, const Progress& progress) override {
@@ -144,10 +160,7 @@ public:
             if (left == 0 || !isPassing(pose.findings.refusal->cause)) throw CaptureRefused(*pose.findings.refusal);
             // A machine that is busier than before shows its pictures later.
             if (pose.findings.refusal->cause == Cause::lateFrame) (void)capture->measureSettle(progress);
-            for (auto calm = std::chrono::milliseconds{0}; calm < kCalms; calm += kPause) {
-                progress.throwIfCancelled();
-                std::this_thread::sleep_for(kPause);
-            }
+            waitFor(kCalms, progress);
         }
     }
 
@@ -242,7 +255,56 @@ std::optional<Missing> missingOn(const Installation& room, const DeviceService& 
     return std::nullopt;
 }
 
+/// Of poses that are much alike.
+Pose meanOf(std::span<const PoseSample> samples) {
+    Pose mean{glm::dvec3(0.0), glm::dquat(0.0, 0.0, 0.0, 0.0)};
+    for (const PoseSample& one : samples) {
+        mean.position += one.pose.position / static_cast<double>(samples.size());
+        const double sign = glm::dot(one.pose.rotation, samples.front().pose.rotation) < 0.0 ? -1.0 : 1.0;
+        mean.rotation += sign * one.pose.rotation;
+    }
+    mean.rotation = glm::normalize(mean.rotation);
+    return mean;
+}
+
+/// Where it lay, if it lay still all that time.
+std::optional<Pose> restOf(std::span<const PoseSample> samples) {
+    if (samples.size() < kFewestPoses) return std::nullopt;
+    const std::size_t half = samples.size() / 2;
+    const Pose before = meanOf(samples.first(half)), after = meanOf(samples.subspan(half));
+    const double turn = glm::angle(glm::normalize(after.rotation * glm::inverse(before.rotation)));
+    const double off =
+        glm::distance(before.position, after.position) + 0.1 * std::min(turn, 2.0 * std::numbers::pi - turn);
+    if (off > kStillWithin) return std::nullopt;
+    return meanOf(samples);
+}
+
 } // namespace
+
+Installation withRestingDevice(Installation room, const PoseBoard& poses, const Progress& progress) {
+    const std::vector<PoseBoard::Entry> entries = poses.entries();
+    const auto device = std::ranges::find(entries, PoseRole::device, &PoseBoard::Entry::role);
+    if (device == entries.end())
+        throw DeviceError("the device", "no tracker sees it", "bring it into sight, and measure again");
+    progress.report(0.0, "waiting for the device to lie still");
+    std::vector<PoseSample> seen;
+    const auto begun = std::chrono::steady_clock::now();
+    while (std::chrono::steady_clock::now() - begun < kMostRestless) {
+        progress.throwIfCancelled();
+        std::this_thread::sleep_for(kPause);
+        const std::optional<PoseSample> now = device->stream->latest();
+        if (!now || !now->valid || (!seen.empty() && now->time <= seen.back().time)) continue;
+        seen.push_back(*now);
+        if (now->time - seen.front().time < kLies) continue;
+        if (const std::optional<Pose> rest = restOf(seen)) {
+            room.worldFromDevice = glm::mat4(matrixOf(inRoom(room, PoseRole::device, *rest)));
+            return room;
+        }
+        std::erase_if(seen, [&](const PoseSample& one) { return one.time < now->time - kLies; });
+    }
+    throw DeviceError("the device", seen.empty() ? "the tracker does not see it" : "it does not come to rest",
+                      "put it down where the tracker sees it, keep your hands off, and measure again");
+}
 
 QString tableObstacle(const Installation& room, const DeviceService& devices, bool isMoved) {
     const std::optional<Missing> missing = missingOn(room, devices, isMoved);

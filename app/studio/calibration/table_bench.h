@@ -11,6 +11,7 @@
 #include "calibration/capture/pattern_display.h"
 #include "calibration/stages/bench.h"
 #include "core/base/clock.h"
+#include "core/loop/pose_stream.h"
 #include "core/scene/installation.h"
 
 namespace lumorph::studio {
@@ -32,6 +33,11 @@ struct TableParts {
 /// Why nothing can be measured with what is connected, in a sentence with what to do; empty: it can.
 /// `isMoved`: servos are needed too.
 [[nodiscard]] QString tableObstacle(const Installation& room, const DeviceService& devices, bool isMoved = true);
+
+/// The room with its device where the tracker sees it lie: the mean of a time in which it lay still, for which this
+/// waits. Not the pose that the show is drawn for, which is predicted. Throws DeviceError where it is out of sight or
+/// does not come to rest; Cancelled.
+[[nodiscard]] Installation withRestingDevice(Installation room, const PoseBoard& poses, const Progress& progress);
 
 /// Made in the window's thread, used and let go of in any. Servos go slowly where they are told, by the service's own
 /// test of servos and so through the guard of their link; they go back to the show when the bench is gone. Throws
