@@ -52,8 +52,8 @@ public:
     ServoSolver(ServoSolver&&) noexcept;
     ServoSolver& operator=(ServoSolver&&) noexcept;
 
-    /// What was seen in the plan's next step. Throws CaptureRefused where the first pass shows nothing of the device, or
-    /// those in which each servo moved alone show it elsewhere than believed; InvalidInput where no step is left.
+    /// What was seen in the plan's next step. Throws CaptureRefused where the first pass shows nothing of the device,
+    /// or those in which each servo moved alone show it elsewhere than believed; InvalidInput where no step is left.
     void take(const ServoPass& pass);
     /// Nothing is left to be seen: the plan has no more steps, or a servo is hidden, dead, swapped or reversed.
     [[nodiscard]] bool ended() const noexcept;
