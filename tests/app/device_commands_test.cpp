@@ -119,18 +119,25 @@ private:
     std::string path_;
 };
 
+constexpr std::chrono::seconds kAtOnce{7};
 constexpr const char* kAsNobody = "/usr/bin/setpriv"; ///< root may open every port
 
-/// What no waiting mends is told before an answer of the board is waited for, which takes eight seconds.
+/// What no waiting mends is told before an answer of the board is waited for, which takes eight seconds each time. One
+/// start of a program may take as long on a machine that is busy otherwise; not three.
 void expectToldAtOnce(const std::string& command, const std::string& address, const std::string& why,
                       const std::string& remedy, bool asNobody = false) {
     SCOPED_TRACE(command + ' ' + address);
     std::vector<std::string> arguments{"device", command, address};
     if (command == "move") arguments.insert(arguments.end(), {"--actuator", "0", "--level", "1"});
-    const auto begun = std::chrono::steady_clock::now();
     if (asNobody) arguments.insert(arguments.begin(), {"--reuid=65534", "--clear-groups", lumorphProgram()});
-    const Outcome outcome = Process(asNobody ? kAsNobody : lumorphProgram(), arguments).wait();
-    EXPECT_LT(std::chrono::steady_clock::now() - begun, std::chrono::seconds(7));
+    Outcome outcome;
+    auto took = std::chrono::steady_clock::duration::max();
+    for (int tries = 0; tries < 3 && took >= kAtOnce; ++tries) {
+        const auto begun = std::chrono::steady_clock::now();
+        outcome = Process(asNobody ? kAsNobody : lumorphProgram(), arguments).wait();
+        took = std::chrono::steady_clock::now() - begun;
+    }
+    EXPECT_LT(took, kAtOnce);
     EXPECT_EQ(outcome.exitCode, 1);
     EXPECT_THAT(outcome.err, HasSubstr(address)) << "what is meant";
     EXPECT_THAT(outcome.err, HasSubstr(why));
