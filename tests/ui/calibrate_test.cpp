@@ -299,6 +299,27 @@ TEST_F(Calibrate, AFolderWithAFaultIsRefusedByCausePlaceAndRemedy) {
     emit patterns->activated(0);
     EXPECT_TRUE(w.offers("Read the images")) << w.story();
     EXPECT_EQ(patterns->itemText(2), "From an order file...");
+
+    // A camera photographed them on another day, and nobody used them yet: one goes on with them.
+    fs::remove_all(folder / view);
+    studio::Settings& settings = w.studio.studio().settings;
+    settings.setValue("calibrate/unfinished", QString::fromStdString(folder.string()));
+    settings.setValue("calibrate/camera/board", kBoard);
+    settings.setValue("calibrate/camera/camera", "");
+    w.studio.click("calibrate.way.camera");
+    EXPECT_TRUE(w.studio.text("calibrate.earlier").startsWith("4 poses of the board, photographed today, "))
+        << w.story();
+    w.studio.screenshot("calibrate-earlier");
+    w.studio.click("calibrate.goOn");
+    ASSERT_TRUE(eventually([&] { return w.studio.findNow<QLabel>("calibrate.headline") != nullptr; }, 60s))
+        << w.story();
+    EXPECT_EQ(focal(), withAll) << "the same poses make the same result";
+    EXPECT_TRUE(w.offers("Photograph pose")) << w.story();
+    EXPECT_EQ(w.studio.findNow<QWidget>("calibrate.goOn"), nullptr);
+    w.studio.studio().commands.find("calibrate.anew")->trigger();
+    ASSERT_TRUE(eventually([&] { return !w.studio.findNow<QLabel>("calibrate.headline"); }, 10s));
+    EXPECT_EQ(w.studio.findNow<QWidget>("calibrate.goOn"), nullptr) << "they were thrown away";
+    EXPECT_TRUE(fs::exists(folder)) << "their pictures stay";
 }
 
 /// As SLStudio writes it, and beside it a camera alone.

@@ -368,6 +368,7 @@ TEST_F(TableProgramTest, CameraAndProjectorAreFreeOnceTheWholeChainIsShown) {
     EXPECT_TRUE(eventually(isWhite, 20s)) << "a board that is laid there now is lit";
     window.click("calibrate.whole");
     EXPECT_TRUE(eventually([&] { return !isWhite(); }, 20s)) << "the show is back";
+    EXPECT_EQ(filesInCommon(), "") << "what the studio knows of the table went through its sockets";
     const auto camera = openCaptureCamera(address("uri"));
     EXPECT_FALSE(camera->grab({}).empty());
 }

@@ -410,6 +410,7 @@ TEST_F(WholeChainAtTheTable, Part4CheckAndShow) {
     std::printf("check: %s\n", chain.story().c_str());
     EXPECT_EQ(chain.story().find("could not be measured"), std::string::npos) << chain.story();
     window.screenshot("whole-table-check", 300ms);
+    EXPECT_EQ(table.filesInCommon(), "");
 }
 
 } // namespace

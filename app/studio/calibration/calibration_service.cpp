@@ -60,25 +60,18 @@ cv::Mat withClippedTint(const cv::Mat& grey) {
     return tinted;
 }
 
-/// What came of reading or solving: a refusal is a result too.
-template <class Result> using OrFinding = std::variant<Result, Finding>;
-
-template <class Result, class Run> OrFinding<Result> orFinding(const Run& run) {
-    try {
-        return run();
-    } catch (const CaptureRefused& refused) {
-        return refused.finding();
-    }
-}
-
 } // namespace
 
 /// What a worker hands over while it works; read in the window's thread.
 struct CalibrationService::Mailbox {
     std::mutex mutex;
-    std::vector<std::pair<std::size_t, CalibrationPose>> poses;
+    std::vector<CalibrationPose> poses;
     cv::Mat shot;
     int index = 0, count = 0;
+    void take(CalibrationPose pose) {
+        const std::scoped_lock lock(mutex);
+        poses.push_back(std::move(pose));
+    }
 };
 
 /// What stood in the way of saving the images of the poses.
@@ -129,6 +122,7 @@ CalibrationService::CalibrationService(Settings& settings, StudioDocument& docum
       liveTimer_(new QTimer(this)), looker_(std::make_unique<Looker>()) {
     state_.setup = keptSetup(settings, keptWay(settings));
     forgetPoses();
+    offerEarlier();
     liveTimer_->setSingleShot(true);
     liveTimer_->setInterval(kLiveMilliseconds);
     connect(liveTimer_, &QTimer::timeout, this, [this] { look(); });
@@ -237,6 +231,7 @@ void CalibrationService::beginAnew() {
     state_.flatPose.clear();
     isFlatChosen_ = false;
     clearResults();
+    offerEarlier();
     followDocument();
     live_ = {};
     if (active_ && isLive(state_.setup.way)) openBench();
@@ -247,6 +242,8 @@ void CalibrationService::beginAnew() {
 /// Those that come now get a folder of their own.
 void CalibrationService::forgetPoses() {
     jobs_.stop("save");
+    if (state_.setup.way == CaptureWay::camera && state_.savedIn == unfinishedFolder(settings_))
+        keepUnfinished(settings_, {});
     watch_ = nullptr;
     incomplete_.clear();
     state_.arriving.clear();
@@ -256,6 +253,52 @@ void CalibrationService::forgetPoses() {
     state_.isReadWhole = false;
     state_.savedIn.clear();
     state_.unsaved = 0;
+    state_.earlier.reset();
+}
+
+/// What a camera photographed before the studio ended, and nobody used yet.
+void CalibrationService::offerEarlier() {
+    state_.earlier.reset();
+    if (state_.setup.way == CaptureWay::camera && state_.poses.empty()) state_.earlier = earlierPoses(settings_);
+}
+
+void CalibrationService::goOnWithEarlier() {
+    if (!state_.earlier || !state_.poses.empty() || state_.work != CalibrationState::Work::none) return;
+    const auto& projectors = document_.state().installation->projectors;
+    if (projector() >= projectors.size()) return tellNoProjector();
+    const EarlierPoses earlier = *std::exchange(state_.earlier, std::nullopt);
+    withdrawVerdicts();
+    CalibrationSetup setup = state_.setup;
+    setup.folder = earlier.folder;
+    setup.order.clear();
+    const glm::ivec2 size = projectors[projector()].camera.size;
+    setup.projector = {size.x, size.y};
+    state_.work = CalibrationState::Work::reading;
+    state_.stage = tr("Looking for images");
+    mailbox_ = std::make_shared<Mailbox>();
+    jobs_.runWith<OrFinding<ReadCapture>>(
+        "read", kPlace, tr("Reading the poses of %1").arg(earlier.when),
+        [setup, box = mailbox_](const Progress& progress) {
+            return readFolder(
+                setup, {}, [&](CalibrationPose pose) { box->take(std::move(pose)); }, progress);
+        },
+        [this, folder = earlier.folder](const OrFinding<ReadCapture>& read) {
+            poll();
+            endWork();
+            store_ = std::make_shared<PoseStore>(isSimulatedWay(state_.setup), folder);
+            state_.savedIn = folder;
+            if (const auto* finding = std::get_if<Finding>(&read); finding && finding->view.empty())
+                state_.refusal = *finding;
+            else if (state_.counting() >= kSolvedBetween || state_.counting() >= state_.setup.poses)
+                solve();
+            look();
+            emit changed();
+        },
+        [this](const std::exception& error) {
+            setTrouble(error);
+            offerEarlier();
+        });
+    emit changed();
 }
 
 void CalibrationService::clearResults() {
@@ -350,7 +393,7 @@ void CalibrationService::chooseFlat() {
 /// What a worker has put into the mailbox so far.
 void CalibrationService::poll() {
     if (mailbox_) {
-        std::vector<std::pair<std::size_t, CalibrationPose>> poses;
+        std::vector<CalibrationPose> poses;
         cv::Mat shot;
         {
             const std::scoped_lock lock(mailbox_->mutex);
@@ -359,7 +402,7 @@ void CalibrationService::poll() {
             if (mailbox_->count > 0 && state_.work == CalibrationState::Work::capturing)
                 state_.stage = tr("Pattern %1 of %2").arg(mailbox_->index + 1).arg(mailbox_->count);
         }
-        for (auto& [index, pose] : poses) takePose(std::move(pose));
+        for (CalibrationPose& pose : poses) takePose(std::move(pose));
         if (!shot.empty()) {
             live_.picture = pictureOfMat(shot);
             live_.camera = {shot.cols, shot.rows};
@@ -388,32 +431,8 @@ void CalibrationService::read(bool anew) {
     state_.stage = tr("Looking for images");
     mailbox_ = std::make_shared<Mailbox>();
     const auto work = [setup = state_.setup, without, box = mailbox_](const Progress& progress) {
-        CaptureListing listing = listCapture(setup.folder);
-        std::vector<CapturedView>& views = listing.views;
-        std::erase_if(views, [&](const CapturedView& view) { return std::ranges::count(without, view.name) > 0; });
-        const CaptureOrder order = orderOf(setup);
-        if (views.empty() && !without.empty()) return OrFinding<ReadCapture>(ReadCapture{{}, {}, listing.passedOver});
-        return orFinding<ReadCapture>([&]() -> OrFinding<ReadCapture> {
-            try {
-                ReadCapture capture = readPoses(
-                    views, setup.board, order,
-                    [&](std::size_t index, const ReadPose& read) {
-                        CalibrationPose pose = poseOf(views[index].name, read, setup.projector);
-                        const std::scoped_lock lock(box->mutex);
-                        box->poses.emplace_back(index, std::move(pose));
-                    },
-                    progress);
-                capture.warnings.insert(capture.warnings.end(), listing.passedOver.begin(), listing.passedOver.end());
-                return capture;
-            } catch (const CaptureRefused& refused) {
-                if (!refused.finding().view.empty()) {
-                    CalibrationPose pose = poseRefusedBy(refused.finding(), pictureOfFinding(views, refused.finding()));
-                    const std::scoped_lock lock(box->mutex);
-                    box->poses.emplace_back(views.size(), std::move(pose));
-                }
-                throw;
-            }
-        });
+        return readFolder(
+            setup, without, [&](CalibrationPose pose) { box->take(std::move(pose)); }, progress);
     };
     jobs_.runWith<OrFinding<ReadCapture>>(
         "read", kPlace, tr("Reading the images"), work,
@@ -711,6 +730,7 @@ CalibrationService::SavedPoses CalibrationService::saveTo(const std::filesystem:
 void CalibrationService::takeSaved(const SavedPoses& saved) {
     state_.savedIn = store_->folder();
     state_.unsaved = store_->unsaved();
+    if (state_.setup.way == CaptureWay::camera) keepUnfinished(settings_, state_.savedIn);
     if (!saveTrouble_.isEmpty()) notices_.dismiss(kPlace, saveTrouble_);
     saveTrouble_.clear();
     if (!saved.trouble) return;
@@ -772,32 +792,16 @@ void CalibrationService::solve() {
         size = {installed.x, installed.y};
     }
     using Result = std::shared_ptr<const CalibrationResult>;
-    const auto work = [capture = std::move(capture), size, setup = state_.setup, flat = flatPoints(),
-                       room = document_.state().installation, placement = placement(),
-                       knowsSize = state_.setup.way != CaptureWay::folder ||
-                                   isSizeOfScreen(size)](const Progress& progress) mutable {
-        return orFinding<Result>([&]() -> OrFinding<Result> {
-            CalibrationSetup said = setup;
-            said.projector = size;
-            capture.order = said.order.empty() ? orderOf(said) : CaptureOrder{size, {}}; // its file may be gone
-            auto result = std::make_shared<CalibrationResult>();
-            result->solved = calibrateCapture(capture, size, {}, progress.part(0.0, 0.8));
-            if (knowsSize)
-                std::erase_if(result->solved.warnings,
-                              [](const Finding& one) { return one.cause == Cause::projectorSize; });
-            result->residuals = residualsOf(capture.views, result->solved);
-            result->heldOutMillimetres = heldOutMillimetresOf(result->solved);
-            result->date = utcDate();
-            result->setup = setup;
-            result->isSimulated =
-                isSimulatedWay(setup) || (setup.way == CaptureWay::folder && isLabCapture(setup.folder));
-            result->plan = planOf(result->solved, flat, setup.board, *room, placement, progress.part(0.8, 0.9));
-            result->next = suggestNextPose(result->solved, setup.board, {}, progress.part(0.9, 1.0));
-            return Result(std::move(result));
-        });
-    };
+    const SolveTask task{std::move(capture),
+                         size,
+                         state_.setup,
+                         flatPoints(),
+                         document_.state().installation,
+                         placement(),
+                         state_.setup.way != CaptureWay::folder || isSizeOfScreen(size)};
     jobs_.runWith<OrFinding<Result>>(
-        "solve", kPlace, tr("Working out camera and projector"), work,
+        "solve", kPlace, tr("Working out camera and projector"),
+        [task](const Progress& progress) { return solveCapture(task, progress); },
         [this](OrFinding<Result> solved) {
             endWork();
             clearResults();
@@ -1007,6 +1011,7 @@ void CalibrationService::use() {
     }
     try {
         if (take_(state_, roomOfResult())) {
+            if (state_.setup.way == CaptureWay::camera) keepUnfinished(settings_, {});
             state_.trouble.clear();
             followDocument();
         }

@@ -84,6 +84,8 @@ public:
     void cancel();
     void setLeftOut(const std::string& pose, bool leftOut);
     void beginAnew();
+    /// Reads the poses that were photographed before the studio ended (`CalibrationState::earlier`); more can follow.
+    void goOnWithEarlier();
     /// Tries again to save the images of poses that are only in memory, and brings all into the folder that is chosen.
     void savePoses();
     void setFlatPose(const std::string& pose);
@@ -131,6 +133,7 @@ private:
     void chooseFlat();
     void takeSaved(const SavedPoses& saved);
     void forgetPoses();
+    void offerEarlier();
     void setTrouble(const std::exception& error);
     void followDocument();
     void takeImport(const std::filesystem::path& file, CalibrationRecord record);

@@ -1,5 +1,8 @@
 #include "app/studio/calibration/calibration_setup.h"
 
+#include <QDateTime>
+#include <QDir>
+#include <QLocale>
 #include <QObject>
 #include <QStandardPaths>
 
@@ -10,8 +13,9 @@ namespace lumorph::studio {
 namespace {
 
 constexpr auto kWayKey = "calibrate/way";
-constexpr auto kSavedKey = "calibrate/saved";         // of all ways
-constexpr auto kInstalledKey = "calibrate/installed"; // of all ways
+constexpr auto kSavedKey = "calibrate/saved";           // of all ways
+constexpr auto kInstalledKey = "calibrate/installed";   // of all ways
+constexpr auto kUnfinishedKey = "calibrate/unfinished"; // of the camera
 constexpr int kMostPoses = 30;
 
 QString keyOf(CaptureWay way, const char* what) {
@@ -74,6 +78,29 @@ void keepSetup(Settings& settings, const CalibrationSetup& setup) {
     settings.setValue(kInstalledKey, static_cast<uint>(setup.installed));
     settings.setValue(keyOf(setup.way, "poses"), setup.poses);
     settings.setValue(kSavedKey, QString::fromStdString(setup.saved.string()));
+}
+
+std::filesystem::path unfinishedFolder(const Settings& settings) {
+    return settings.value(kUnfinishedKey).toString().toStdString();
+}
+
+void keepUnfinished(Settings& settings, const std::filesystem::path& folder) {
+    settings.setValue(kUnfinishedKey, QString::fromStdString(folder.string()));
+}
+
+std::optional<EarlierPoses> earlierPoses(const Settings& settings) {
+    const std::filesystem::path folder = unfinishedFolder(settings);
+    if (folder.empty()) return std::nullopt;
+    // Poses are moved in whole; a name that begins with a dot is one that was being written.
+    const QFileInfoList poses =
+        QDir(QString::fromStdString(folder.string())).entryInfoList(QDir::Dirs | QDir::NoDotAndDotDot, QDir::Time);
+    if (poses.empty()) return std::nullopt;
+    const QDateTime last = poses.front().lastModified();
+    const qint64 days = last.date().daysTo(QDate::currentDate());
+    const QString day = days == 0   ? QObject::tr("today")
+                        : days == 1 ? QObject::tr("yesterday")
+                                    : QLocale().toString(last.date(), QLocale::LongFormat);
+    return EarlierPoses{folder, static_cast<int>(poses.size()), day + last.toString(", HH:mm")};
 }
 
 CaptureOrder orderOf(const CalibrationSetup& setup) {

@@ -55,6 +55,19 @@ struct CalibrationSetup {
 [[nodiscard]] CaptureWay keptWay(const Settings& settings);
 void keepSetup(Settings& settings, const CalibrationSetup& setup);
 
+/// Poses that a camera photographed for what was chosen last, and that nobody used or threw away.
+struct EarlierPoses {
+    std::filesystem::path folder;
+    int count = 0;
+    QString when; ///< "yesterday, 17:12", of the last one
+    bool operator==(const EarlierPoses&) const = default;
+};
+/// Nothing where there are none, or the disk has them no more.
+[[nodiscard]] std::optional<EarlierPoses> earlierPoses(const Settings& settings);
+[[nodiscard]] std::filesystem::path unfinishedFolder(const Settings& settings);
+/// An empty folder: there are none.
+void keepUnfinished(Settings& settings, const std::filesystem::path& folder);
+
 /// "pose_1" is that of number 0.
 [[nodiscard]] std::string nameOfPose(int number);
 /// What the images of a pose show. Throws InvalidInput; DataError where the order file cannot be used.

@@ -79,6 +79,7 @@ struct CalibrationState {
     QString arriving;         ///< what is not yet whole of what comes into the folder, in words; empty: nothing
     bool isImported = false;  ///< the result came from a file, without poses to look at
     std::filesystem::path savedIn;        ///< folder of the images of the poses; empty while there are none
+    std::optional<EarlierPoses> earlier;  ///< that one can go on with
     int unsaved = 0;                      ///< poses whose images are only in memory
     std::vector<std::string> askedBeside; ///< what the room holds, while it asks (SimulatedQuestion); else empty
     bool isResultInRoom = false;          ///< the room has the figures of the result

@@ -14,6 +14,53 @@ constexpr int kSearchWidth = 640; // pixels; the live picture's board is found i
 
 } // namespace
 
+OrFinding<ReadCapture> readFolder(const CalibrationSetup& setup, const std::vector<std::string>& without,
+                                  const PoseTaker& take, const Progress& progress) {
+    CaptureListing listing = listCapture(setup.folder);
+    std::vector<CapturedView>& views = listing.views;
+    std::erase_if(views, [&](const CapturedView& view) { return std::ranges::count(without, view.name) > 0; });
+    if (views.empty() && !without.empty()) return ReadCapture{{}, {}, listing.passedOver};
+    try {
+        const CaptureOrder order = orderOf(setup);
+        ReadCapture capture = readPoses(
+            views, setup.board, order,
+            [&](std::size_t index, const ReadPose& read) { take(poseOf(views[index].name, read, setup.projector)); },
+            progress);
+        capture.warnings.insert(capture.warnings.end(), listing.passedOver.begin(), listing.passedOver.end());
+        return capture;
+    } catch (const CaptureRefused& refused) {
+        const Finding& finding = refused.finding();
+        if (!finding.view.empty()) take(poseRefusedBy(finding, pictureOfFinding(views, finding)));
+        return finding;
+    }
+}
+
+OrFinding<std::shared_ptr<const CalibrationResult>> solveCapture(const SolveTask& task, const Progress& progress) {
+    try {
+        CalibrationSetup said = task.setup;
+        said.projector = task.projector;
+        ReadCapture capture = task.capture;
+        capture.order = said.order.empty() ? orderOf(said) : CaptureOrder{task.projector, {}}; // its file may be gone
+        auto result = std::make_shared<CalibrationResult>();
+        result->solved = calibrateCapture(capture, task.projector, {}, progress.part(0.0, 0.8));
+        if (task.knowsSize)
+            std::erase_if(result->solved.warnings,
+                          [](const Finding& one) { return one.cause == Cause::projectorSize; });
+        result->residuals = residualsOf(capture.views, result->solved);
+        result->heldOutMillimetres = heldOutMillimetresOf(result->solved);
+        result->date = utcDate();
+        result->setup = task.setup;
+        result->isSimulated =
+            isSimulatedWay(task.setup) || (task.setup.way == CaptureWay::folder && isLabCapture(task.setup.folder));
+        result->plan =
+            planOf(result->solved, task.flat, task.setup.board, *task.room, task.placement, progress.part(0.8, 0.9));
+        result->next = suggestNextPose(result->solved, task.setup.board, {}, progress.part(0.9, 1.0));
+        return std::shared_ptr<const CalibrationResult>(std::move(result));
+    } catch (const CaptureRefused& refused) {
+        return refused.finding();
+    }
+}
+
 CalibrationPose poseOf(const std::string& name, const ReadPose& read, cv::Size projector) {
     CalibrationPose pose;
     pose.name = name;

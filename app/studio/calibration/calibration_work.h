@@ -1,7 +1,10 @@
 #pragma once
 
+#include <functional>
+#include <memory>
 #include <optional>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include <QPointF>
@@ -21,6 +24,30 @@ namespace lumorph::studio {
 
 /// Of the images of a pose the one that shows most.
 [[nodiscard]] cv::Mat brightestOf(const std::vector<cv::Mat>& images);
+
+/// What came of reading or solving: a refusal is a result too.
+template <class Result> using OrFinding = std::variant<Result, Finding>;
+
+/// Gets each pose as it is read, also one that is refused.
+using PoseTaker = std::function<void(CalibrationPose)>;
+
+/// The poses in the folder of a setup, all but those `without`. Throws DataError where there is none; Cancelled.
+[[nodiscard]] OrFinding<ReadCapture> readFolder(const CalibrationSetup& setup, const std::vector<std::string>& without,
+                                                const PoseTaker& take, const Progress& progress);
+
+/// What is solved, and for which room.
+struct SolveTask {
+    ReadCapture capture;
+    cv::Size projector; ///< pixels
+    CalibrationSetup setup;
+    std::optional<BoardPoints> flat; ///< of the pose that lay on the table
+    std::shared_ptr<const Installation> room;
+    RoomPlacement placement;
+    bool knowsSize = false; ///< the projector's; else a doubt about it is told
+};
+/// Throws what the solver throws where it is no refusal; Cancelled.
+[[nodiscard]] OrFinding<std::shared_ptr<const CalibrationResult>> solveCapture(const SolveTask& task,
+                                                                               const Progress& progress);
 
 /// The image that a refusal is about, or one of its pose; empty where it cannot be read.
 [[nodiscard]] cv::Mat pictureOfFinding(const std::vector<CapturedView>& views, const Finding& finding);

@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <memory>
 #include <mutex>
+#include <utility>
 #include <vector>
 
 #include "calibration/capture/pose_capture.h"
@@ -16,8 +17,10 @@ class PoseStore {
 public:
     using Pose = std::shared_ptr<const CapturedPose>;
 
-    /// `isSimulated`: the images are the virtual lab's, and the folder says so.
-    explicit PoseStore(bool isSimulated = false) : isSimulated_(isSimulated) {}
+    /// `isSimulated`: the images are the virtual lab's, and the folder says so. `folder`: of the poses so far, where
+    /// they were saved at another time.
+    explicit PoseStore(bool isSimulated = false, std::filesystem::path folder = {})
+        : isSimulated_(isSimulated), folder_(std::move(folder)) {}
 
     /// Saves a pose (null: none) below `parent`, after those that could not be saved before. Where the poses so far lie
     /// below another parent they are copied there first, so that all are together. Throws DeviceError where the disk

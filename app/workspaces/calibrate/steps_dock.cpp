@@ -91,6 +91,7 @@ public:
             rows_[step.id] = new StepRow(number++, step.id, this);
             column.layout->addWidget(rows_[step.id]);
         }
+        addEarlier(*column.layout);
         addPoses(*column.layout);
         column.layout->addWidget(new SetupForm(parts, this));
         auto* end = new QHBoxLayout;
@@ -103,6 +104,34 @@ public:
     }
 
 private:
+    /// Poses of another day that one can go on with.
+    void addEarlier(QVBoxLayout& column) {
+        earlierPart_ = new QWidget(this);
+        auto* part = new QVBoxLayout(earlierPart_);
+        part->setContentsMargins(0, 0, 0, 0);
+        part->setSpacing(8);
+        earlier_ = new QLabel(this);
+        earlier_->setObjectName("calibrate.earlier");
+        earlier_->setWordWrap(true);
+        part->addWidget(earlier_);
+        auto* goOn = new QPushButton("&Go on with these poses", this);
+        goOn->setObjectName("calibrate.goOn");
+        goOn->setToolTip("For a camera, a projector and a board that are as they were; nothing may have been moved");
+        part->addWidget(goOn, 0, Qt::AlignLeft);
+        column.addWidget(earlierPart_);
+        connect(goOn, &QPushButton::clicked, this, [this] { parts_.service.goOnWithEarlier(); });
+    }
+
+    void showEarlier(const CalibrationState& state) {
+        const bool offers = state.earlier && state.poses.empty() && state.work == CalibrationState::Work::none;
+        earlierPart_->setVisible(offers);
+        if (!offers) return;
+        earlier_->setText(
+            QString("%1 of the board, photographed %2, %3 not used yet.")
+                .arg(state.earlier->count == 1 ? QString("One pose") : QString("%1 poses").arg(state.earlier->count),
+                     state.earlier->when, state.earlier->count == 1 ? "was" : "were"));
+    }
+
     void addPoses(QVBoxLayout& column) {
         posesPart_ = new QWidget(this);
         auto* part = new QVBoxLayout(posesPart_);
@@ -167,6 +196,7 @@ private:
             const int rows = std::clamp(poses_->count(), 1, 6);
             poses_->setFixedHeight(rows * std::max(24, poses_->sizeHintForRow(0)) + 6);
         }
+        showEarlier(state);
         showSaved(state);
         const QSignalBlocker quiet(flat_);
         flat_->clear();
@@ -200,6 +230,8 @@ private:
 
     CalibrateParts parts_;
     std::map<QString, StepRow*> rows_;
+    QWidget* earlierPart_ = nullptr;
+    QLabel* earlier_ = nullptr;
     QWidget* posesPart_ = nullptr;
     QListWidget* poses_;
     QCheckBox* leaveOut_ = nullptr;
