@@ -220,11 +220,24 @@ void PoseCapture::capturePatterns(CapturedPose& pose, const Progress& progress) 
 
 CapturedPose PoseCapture::capture(const std::string& name, const Progress& progress) {
     if (!settle_) measureSettle(progress.part(0.0, 0.1));
+    for (int left = settings_.triesWhenLate - 1;; --left) {
+        CapturedPose pose = captureOnce(name, progress.part(0.1, 1.0));
+        if (left <= 0 || !camera_.isLive() || pose.isSound() || pose.findings.refusal->cause != Cause::lateFrame)
+            return pose;
+        // A machine that is busier than before shows its pictures later.
+        const SettleTime before = *settle_;
+        measureSettle(progress.part(0.0, 0.1));
+        settle_->delay = std::max(settle_->delay, before.delay + before.delay / 2);
+        settle_->lateFrames = std::max(settle_->lateFrames, before.lateFrames + 1);
+    }
+}
+
+CapturedPose PoseCapture::captureOnce(const std::string& name, const Progress& progress) {
     CapturedPose pose;
     pose.name = name;
     const ScreenLoan loan(display_);
     try {
-        capturePatterns(pose, progress.part(0.1, 1.0));
+        capturePatterns(pose, progress);
     } catch (const CaptureRefused& refused) { // a file that cannot be read
         pose.findings.refusal = refused.finding();
         pose.findings.refusal->view = name;

@@ -36,6 +36,7 @@ struct PoseCaptureSettings {
     std::function<void(const Shot&)> onShot; ///< in the capturing thread; must return at once
     bool isScalingChecked = true;            ///< before the first pose of a live camera
     Microseconds longestSettle{2'000'000};   ///< slower ones are refused
+    int triesWhenLate = 1; ///< of a pose whose pictures come late, each after measuring anew how late they come
     std::shared_ptr<const Clock> clock = std::make_shared<SteadyClock>();
 };
 
@@ -68,6 +69,7 @@ public:
 private:
     [[nodiscard]] cv::Mat shoot(const cv::Mat& picture, const Progress& progress);
     [[nodiscard]] std::optional<Finding> scaling(const cv::Mat& white, const cv::Mat& black, const Progress& progress);
+    [[nodiscard]] CapturedPose captureOnce(const std::string& name, const Progress& progress);
     void capturePatterns(CapturedPose& pose, const Progress& progress);
 
     CaptureCamera& camera_;

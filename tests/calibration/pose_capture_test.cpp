@@ -397,6 +397,23 @@ TEST(PoseCapture, EachFaultIsToldByItsCauseAsItComes) {
     }
 }
 
+TEST(PoseCapture, BusierMachineIsWaitedForAndTheSamePoseTakenAgain) {
+    const int first = firstPatternFrame();
+    SlowCapture slow;
+    slow.settings.triesWhenLate = 3;
+    slow.lab.before = [&slow, first](int frame) {
+        if (frame == first + 20) slow.lab.delay += Microseconds(200'000);
+    };
+    const CapturedPose pose = slow.capture();
+    EXPECT_EQ(refusalOf(pose), "sound");
+    ASSERT_EQ(pose.images.size(), slow.settings.order.images.size());
+    for (std::size_t i = 0; i < pose.images.size(); i += 7) { // noise is some grey levels
+        const cv::Mat expected = slow.lab.photograph(drawPattern(slow.settings.order.images[i], {320, 200}));
+        EXPECT_LE(cv::norm(pose.images[i], expected, cv::NORM_L1) / static_cast<double>(expected.total()), 3.0)
+            << pose.files[i];
+    }
+}
+
 TEST(PoseCapture, KeystoneIsToldBeforeTheFirstPose) {
     // A projector mixes what it scales before it becomes light.
     const cv::Matx33d scaled(0.93, 0.0, 11.0, 0.0, 0.93, 7.0, 0.0, 0.0, 1.0);

@@ -188,6 +188,7 @@ public:
             PoseCaptureSettings settings;
             settings.order = parsePattern(setup_.pattern, display_->size());
             settings.board = setup_.board;
+            settings.triesWhenLate = 3;
             settings.onShot = [this](const Shot& shot) {
                 if (onShot_) onShot_(shot);
             };

@@ -75,8 +75,8 @@ private:
 
 /// Something that may be over when one looks again.
 bool isPassing(Cause cause) {
-    return cause == Cause::rigMoved || cause == Cause::lateFrame || cause == Cause::exposureDrifts ||
-           cause == Cause::handInView || cause == Cause::wrongOrder; // as a person in the light is called
+    return cause == Cause::rigMoved || cause == Cause::exposureDrifts || cause == Cause::handInView ||
+           cause == Cause::wrongOrder; // as a person in the light is called
 }
 
 void waitFor(std::chrono::milliseconds calm, const Progress& progress) {
@@ -150,6 +150,7 @@ public:
             PoseCaptureSettings settings;
             settings.order = captured = order;
             settings.clock = clock_;
+            settings.triesWhenLate = kTries;
             capture = std::make_unique<PoseCapture>(camera(), *lit->second, std::move(settings));
         }
         // Whoever measures for minutes, alone, is not to begin anew for somebody who walked past once.
@@ -158,8 +159,6 @@ public:
             CapturedPose pose = capture->capture("check", progress);
             if (pose.isSound()) return std::move(pose.images);
             if (left == 0 || !isPassing(pose.findings.refusal->cause)) throw CaptureRefused(*pose.findings.refusal);
-            // A machine that is busier than before shows its pictures later.
-            if (pose.findings.refusal->cause == Cause::lateFrame) (void)capture->measureSettle(progress);
             waitFor(kCalms, progress);
         }
     }

@@ -345,7 +345,7 @@ void SetupForm::listCameras() {
     const bool isListed =
         std::ranges::any_of(found, [&](const CameraInfo& info) { return QString::fromStdString(info.path) == chosen; });
     if (!chosen.isEmpty() && !isListed) found.push_back({chosen.toStdString(), {}});
-    camera_->addItem(found.empty() ? "No camera is connected" : "Choose a camera", QString());
+    camera_->addItem(found.empty() ? "None connected" : "Choose a camera", QString());
     for (const CameraInfo& info : found) {
         const QString path = QString::fromStdString(info.path);
         camera_->addItem(info.name.empty() ? path : QString::fromStdString(info.name), path);
