@@ -314,7 +314,8 @@ TEST_F(Calibrate, AFolderWithAFaultIsRefusedByCausePlaceAndRemedy) {
     ASSERT_TRUE(eventually([&] { return w.studio.findNow<QLabel>("calibrate.headline") != nullptr; }, 60s))
         << w.story();
     EXPECT_EQ(focal(), withAll) << "the same poses make the same result";
-    EXPECT_TRUE(w.offers("Photograph pose")) << w.story();
+    EXPECT_EQ(w.studio.findNow<QListWidget>("calibrate.poses.list")->count(), 4);
+    EXPECT_TRUE(w.studio.text("calibrate.saved").contains("captured")) << "what follows is saved beside them";
     EXPECT_EQ(w.studio.findNow<QWidget>("calibrate.goOn"), nullptr);
     w.studio.studio().commands.find("calibrate.anew")->trigger();
     ASSERT_TRUE(eventually([&] { return !w.studio.findNow<QLabel>("calibrate.headline"); }, 10s));
